@@ -1,0 +1,34 @@
+"""Atomic force microscopy on soft, adhesive, viscoelastic surfaces from first principles."""
+
+__version__ = "0.1.0"
+
+from softafm import solvers
+from softafm.contact import Contact
+from softafm.errors import AccuracyWarning, DivergedError
+from softafm.modes.force_distance import force_distance
+from softafm.modes.tapping import tapping_cycle
+from softafm.motions import Sine, Trajectory, Triangle
+from softafm.results import export, load, save
+from softafm.rheology import Elastic, GeneralizedKelvinVoigt, StandardLinearSolid
+from softafm.surfaces import LennardJones
+from softafm.tips import Paraboloid
+
+__all__ = [
+    "AccuracyWarning",
+    "Contact",
+    "DivergedError",
+    "Elastic",
+    "GeneralizedKelvinVoigt",
+    "LennardJones",
+    "Paraboloid",
+    "Sine",
+    "StandardLinearSolid",
+    "Trajectory",
+    "Triangle",
+    "export",
+    "force_distance",
+    "load",
+    "save",
+    "solvers",
+    "tapping_cycle",
+]

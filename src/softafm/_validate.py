@@ -1,0 +1,38 @@
+"""One-line refusals of bad numbers: field, value, unit and what would be valid."""
+
+from math import isfinite
+
+
+def positive(name: str, value: float, unit: str) -> float:
+    """Return ``value`` as a float if it is finite and above zero, else raise ValueError."""
+    number = finite(name, value, unit)
+    if number <= 0:
+        raise ValueError(f"{name} = {number:g} {unit}: must be greater than 0".replace("  ", " "))
+    return number
+
+
+def finite(name: str, value: float, unit: str) -> float:
+    """Return ``value`` as a float if it is a finite real number, else raise ValueError."""
+    try:
+        number = float(value)
+    except (TypeError, ValueError):
+        raise ValueError(f"{name} = {value!r}: must be a number in {unit}") from None
+    if not isfinite(number):
+        raise ValueError(f"{name} = {number} {unit}: must be a finite number")
+    return number
+
+
+def poisson_ratio(value: float) -> float:
+    """Return ``value`` if it lies in (-1, 0.5], the range of stable isotropic solids."""
+    number = finite("poisson", value, "(no unit)")
+    if not -1 < number <= 0.5:
+        raise ValueError(f"poisson = {number:g}: must be above -1 and at most 0.5")
+    return number
+
+
+def tolerance_of(value: float) -> float:
+    """Return ``value`` if it is a tolerance that solvers can keep, 1e-5 to 0.1."""
+    number = finite("tolerance", value, "(no unit)")
+    if not 1e-5 <= number <= 0.1:
+        raise ValueError(f"tolerance = {number:g}: must be between 1e-5 and 0.1")
+    return number

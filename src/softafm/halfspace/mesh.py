@@ -1,0 +1,80 @@
+"""Where the surface is sampled: a radial mesh in units of the contact radius, finest at its edge.
+
+Nodes are ξ_j = ξ(j), j = 0..n−1, with r = a·ξ and a the radius of the contact edge. The smooth map
+
+    j(ξ) = [asinh(g(ξ − 1)/δ) + asinh(g(ξ + 1)/δ)]/g
+
+has spacing δ at the edge ξ = 1, grows by a factor e^g per node away from it, and is odd in ξ, so
+even functions of radius stay even in j. Sums over nodes with weights ξ dξ/dj are then trapezoidal
+rules in j for smooth integrands: they converge faster than any power of the spacing, apart from the
+end at the axis, which takes its Euler-Maclaurin term as a mass of its own.
+"""
+
+from functools import lru_cache
+from typing import NamedTuple
+
+import numpy as np
+
+from softafm.halfspace.kernel import influence
+
+
+class UnitMesh(NamedTuple):
+    """Nodes, masses and stiffness of the half-space at contact radius 1.
+
+    For a contact radius a: radii a·nodes, masses a²·masses, u = −c K p becomes
+    stiffness·u = −(c a) masses·p, as K(a) = a·K(1).
+    """
+
+    nodes: np.ndarray
+    """ξ, shape (n,)."""
+    masses: np.ndarray
+    """∫ f s ds = Σ masses·f, shape (n,)."""
+    stiffness: np.ndarray
+    """Inverse of the symmetric influence matrix, shape (n, n)."""
+    edge_spacing: float
+    """δ, node spacing at ξ = 1."""
+    growth: float
+    """g, logarithmic growth of the spacing per node."""
+
+
+def node_index(radius, edge_spacing: float, growth: float):
+    """Fractional node index j(ξ) of the mesh map at ``radius`` ξ."""
+    inner = np.arcsinh(growth * (radius - 1) / edge_spacing)
+    outer = np.arcsinh(growth * (radius + 1) / edge_spacing)
+    return (inner + outer) / growth
+
+
+def _spacing(radius, edge_spacing: float, growth: float):
+    """dξ/dj at ``radius`` ξ."""
+    inner = 1 / np.hypot(edge_spacing, growth * (radius - 1))
+    outer = 1 / np.hypot(edge_spacing, growth * (radius + 1))
+    return 1 / (inner + outer)
+
+
+@lru_cache(maxsize=64)
+def unit_mesh(edge_spacing: float, growth: float, extent: float) -> UnitMesh:
+    """Build the mesh out to ξ = ``extent`` (or just beyond) and its stiffness; cached.
+
+    ``edge_spacing`` δ and ``growth`` g are dimensionless, see the module's formula.
+    """
+    last = int(np.ceil(node_index(extent, edge_spacing, growth)))
+    outside = 2 * extent
+    while node_index(outside, edge_spacing, growth) < last:
+        outside *= 2
+    low, high = np.zeros(last + 1), np.full(last + 1, outside)
+    for _ in range(60):
+        middle = (low + high) / 2
+        above = node_index(middle, edge_spacing, growth) > np.arange(last + 1)
+        low, high = np.where(above, low, middle), np.where(above, middle, high)
+    nodes = (low + high) / 2
+    nodes[0] = 0.0
+    spacing = _spacing(nodes, edge_spacing, growth)
+
+    masses = nodes * spacing
+    masses[0] = spacing[0] ** 2 / 12
+    masses[-1] /= 2
+    stiffness = np.linalg.inv(influence(nodes, spacing, masses))
+    stiffness = (stiffness + stiffness.T) / 2
+    for array in (nodes, masses, stiffness):
+        array.setflags(write=False)
+    return UnitMesh(nodes, masses, stiffness, edge_spacing, growth)

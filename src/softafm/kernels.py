@@ -1,0 +1,68 @@
+"""Compiled tip profiles, surface laws and motions, called by the solvers' hot loops."""
+
+from math import cos, pi
+
+from softafm.compiled import HEIGHT, POTENTIAL, PRESSURE, PROFILE, compiled
+
+
+@compiled(PROFILE)
+def paraboloid(radius, parameters, profile, n):
+    curvature = 0.5 / parameters[0]
+    for i in range(n):
+        profile[i] = curvature * radius[i] * radius[i]
+
+
+@compiled(PRESSURE)
+def lennard_jones_pressure(gap, parameters, pressure, slope, n):
+    strength = parameters[0] / (6 * pi)
+    z0 = parameters[1]
+    for i in range(n):
+        inverse = 1 / gap[i]
+        attraction = strength * inverse * inverse * inverse
+        ratio = z0 * inverse
+        cube = ratio * ratio * ratio
+        repulsion = attraction * cube * cube
+        pressure[i] = repulsion - attraction
+        slope[i] = (3 * attraction - 9 * repulsion) * inverse
+
+
+@compiled(POTENTIAL)
+def lennard_jones_potential(gap, parameters, potential, n):
+    strength = parameters[0] / (12 * pi)
+    z0 = parameters[1]
+    for i in range(n):
+        inverse = 1 / gap[i]
+        ratio = z0 * inverse
+        cube = ratio * ratio * ratio
+        potential[i] = strength * inverse * inverse * (0.25 * cube * cube - 1)
+
+
+@compiled(HEIGHT)
+def triangle(time, parameters):
+    turn, speed, time_of_turn = parameters[0], parameters[1], parameters[2]
+    return turn + speed * abs(time - time_of_turn)
+
+
+@compiled(HEIGHT)
+def sine(time, parameters):
+    mean, amplitude, frequency = parameters[0], parameters[1], parameters[2]
+    return mean + amplitude * cos(2 * pi * frequency * time)
+
+
+@compiled(HEIGHT)
+def sampled(time, parameters):
+    """Cubic Hermite interpolation; parameters hold times, heights and slopes, n of each."""
+    n = parameters.size // 3
+    low, high = 0, n - 1
+    while high - low > 1:
+        middle = (low + high) // 2
+        if parameters[middle] <= time:
+            low = middle
+        else:
+            high = middle
+    step = parameters[low + 1] - parameters[low]
+    x = (time - parameters[low]) / step
+    y0, y1 = parameters[n + low], parameters[n + low + 1]
+    d0, d1 = step * parameters[2 * n + low], step * parameters[2 * n + low + 1]
+    rest = 1 - x
+    return rest * rest * (y0 * (1 + 2 * x) + d0 * x) + x * x * (y1 * (3 - 2 * x) - d1 * rest)

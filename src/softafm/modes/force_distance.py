@@ -1,0 +1,71 @@
+"""Force-distance curves: the tip height is prescribed."""
+
+import numpy as np
+import xarray as xr
+
+from softafm._validate import tolerance_of
+from softafm.contact import Contact
+from softafm.modes.start import refuse_start_inside
+from softafm.motions import Sine, Trajectory, Triangle
+from softafm.progress import Progress, reporting
+from softafm.results import dataset
+from softafm.solvers.energy import Energy
+
+
+def force_distance(
+    contact: Contact,
+    motion: Triangle | Sine | Trajectory,
+    *,
+    solver=None,
+    tolerance: float = 1e-2,
+    profiles: bool = False,
+    progress: bool | Progress | None = None,
+) -> xr.Dataset:
+    """Force on a tip that is moved through ``motion`` above a surface flat and relaxed at first.
+
+    Parameters
+    ----------
+    contact
+        Tip, sample and surface law.
+    motion
+        ``Triangle``, ``Sine`` or ``Trajectory``.
+    solver
+        A solver of ``softafm.solvers``; ``Energy()`` by default.
+    tolerance
+        Target relative error of the reported observables, 1e-5 to 0.1.
+    profiles
+        Keep surface deformation, gap and pressure over (time, r).
+    progress
+        None, True for a bar, or a callable (fraction, message).
+
+    Returns
+    -------
+    xarray.Dataset
+        Over ``time``: ``tip_height``, ``force``, ``contact_radius``, ``axis_deformation``,
+        ``viscous_power``. Scalars ``force_max``, ``force_min``, ``force_min_approach`` (before the
+        lowest tip height), ``loop_energy`` (−∮F dh0), ``viscous_loss``. ``jump_time`` and
+        ``jump_energy`` of elastic jumps. All SI.
+
+    Raises
+    ------
+    ValueError
+        If the tip starts inside the surface or an argument is out of range.
+    DivergedError
+        If the solver cannot continue.
+    """
+    tolerance = tolerance_of(tolerance)
+    solver = Energy() if solver is None else solver
+    refuse_start_inside(contact, motion)
+    with reporting(progress) as report:
+        history = solver.solve(
+            contact, motion, tolerance=tolerance, profiles=profiles, progress=report
+        )
+    force = history.force
+    observables = {
+        "force_max": ((), force.max()),
+        "force_min": ((), force.min()),
+        "force_min_approach": ((), force[: np.argmin(history.tip_height) + 1].min()),
+        "loop_energy": ((), -history.integrate(force, motion.velocity)),
+        "viscous_loss": ((), history.integrate(history.viscous_power, np.ones_like)),
+    }
+    return dataset("force-distance", contact, motion, solver, tolerance, history, observables)

@@ -1,0 +1,109 @@
+"""Tapping: the tip oscillates with given amplitude about a given mean height."""
+
+import numpy as np
+import xarray as xr
+
+from softafm._validate import tolerance_of
+from softafm.contact import Contact
+from softafm.modes.start import refuse_start_inside
+from softafm.motions import Sine
+from softafm.progress import Progress, reporting
+from softafm.results import dataset
+from softafm.solvers.energy import Energy
+
+
+def tapping_cycle(
+    contact: Contact,
+    amplitude: float,
+    mean_height: float,
+    frequency: float,
+    cycles: int = 1,
+    *,
+    solver=None,
+    tolerance: float = 1e-2,
+    profiles: bool = False,
+    progress: bool | Progress | None = None,
+) -> xr.Dataset:
+    """Cycles of h0 = mean_height + amplitude·cos(2πft) from the top, the surface flat at first.
+
+    Parameters
+    ----------
+    contact
+        Tip, sample and surface law.
+    amplitude, mean_height
+        Amplitude and mean height of the tip, m.
+    frequency
+        Frequency f, Hz.
+    cycles
+        Number of cycles.
+    solver, tolerance, profiles, progress
+        As for ``force_distance``.
+
+    Returns
+    -------
+    xarray.Dataset
+        The curves of ``force_distance`` over all cycles. Scalars of the last cycle: ``virial``
+        (mean of F·(h0 − mean height); Rajabifar et al. 2021, equation 30), ``dissipation``
+        (−∮F dh0, equation 29), ``force_max``, ``force_min``, ``force_min_approach``,
+        ``contact_time``, ``indentation``; ``cycle_virial`` and ``cycle_dissipation`` of every
+        cycle. All SI.
+
+    Raises
+    ------
+    ValueError
+        If the tip starts inside the surface or an argument is out of range.
+    DivergedError
+        If the solver cannot continue.
+    """
+    tolerance = tolerance_of(tolerance)
+    solver = Energy() if solver is None else solver
+    motion = Sine(mean_height, amplitude, frequency, cycles)
+    refuse_start_inside(contact, motion)
+    with reporting(progress) as report:
+        history = solver.solve(
+            contact, motion, tolerance=tolerance, profiles=profiles, progress=report
+        )
+
+    period = 1 / motion.frequency
+    tops = period * np.arange(motion.cycles + 1)
+
+    def each_cycle(weight):
+        return np.array(
+            [
+                history.integrate(history.force, weight, a, b)
+                for a, b in zip(tops, tops[1:], strict=False)
+            ]
+        )
+
+    virial = each_cycle(lambda t: motion.height(t) - motion.mean_height) / period
+    dissipation = -each_cycle(motion.velocity)
+    last = history.time >= tops[-2] - 1e-9 * period
+    approach = last & (history.time <= tops[-2] + period * (0.5 + 1e-9))
+    force = history.force
+    axis_gap = history.tip_height - history.axis_deformation
+    observables = {
+        "virial": ((), virial[-1]),
+        "dissipation": ((), dissipation[-1]),
+        "cycle_virial": ("cycle", virial),
+        "cycle_dissipation": ("cycle", dissipation),
+        "force_max": ((), force[last].max()),
+        "force_min": ((), force[last].min()),
+        "force_min_approach": ((), force[approach].min()),
+        "contact_time": (
+            (),
+            time_below(history.time[last], axis_gap[last], contact.surface.gap_of_largest_tension),
+        ),
+        "indentation": ((), max(0.0, -history.axis_deformation[last].min())),
+        "viscous_loss": ((), history.integrate(history.viscous_power, np.ones_like, tops[-2])),
+    }
+    return dataset("tapping-cycle", contact, motion, solver, tolerance, history, observables)
+
+
+def time_below(time, values, level) -> float:
+    """Time during which ``values``, linear between instants, stay below ``level``."""
+    below = values < level
+    a, b = values[:-1], values[1:]
+    crossing = below[:-1] != below[1:]
+    part = np.where(crossing, (level - a) / np.where(crossing, b - a, 1.0), 0.0)
+    share = np.where(below[:-1], np.where(below[1:], 1.0, part), np.where(below[1:], 1 - part, 0.0))
+    return float(np.sum(np.diff(time) * share))

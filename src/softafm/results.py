@@ -1,0 +1,192 @@
+"""Results as xarray datasets: names, units, provenance, saving, loading, export."""
+
+import json
+import os
+import tempfile
+from dataclasses import fields, is_dataclass
+from datetime import UTC, datetime
+from pathlib import Path
+
+import numpy as np
+import xarray as xr
+
+import softafm
+from softafm.solvers.history import History
+
+# name: (unit, long name)
+VARIABLES = {
+    "time": ("s", "time"),
+    "r": ("m", "radial coordinate"),
+    "tip_height": ("m", "tip height above the undeformed surface"),
+    "force": ("N", "force on the tip, positive = repulsive"),
+    "contact_radius": ("m", "radius of the largest tension"),
+    "axis_deformation": ("m", "surface displacement under the apex, positive towards the tip"),
+    "viscous_power": ("W", "power dissipated in the sample"),
+    "deformation": ("m", "surface displacement, positive towards the tip"),
+    "gap": ("m", "gap between tip and deformed surface"),
+    "pressure": ("Pa", "pressure on the surface, positive = repulsive"),
+    "force_max": ("N", "largest force"),
+    "force_min": ("N", "smallest force"),
+    "force_min_approach": ("N", "smallest force before the lowest tip height"),
+    "loop_energy": ("J", "energy dissipated over the motion, -∮F dh0"),
+    "viscous_loss": ("J", "energy dissipated in the sample"),
+    "virial": ("J", "virial, mean of F·(h0 - mean height) over a cycle"),
+    "dissipation": ("J", "energy dissipated in a cycle, -∮F dh0"),
+    "cycle_virial": ("J", "virial of each cycle"),
+    "cycle_dissipation": ("J", "energy dissipated in each cycle"),
+    "contact_time": ("s", "time in contact in a cycle"),
+    "indentation": ("m", "largest depth of the surface under the apex"),
+    "jump_time": ("s", "time of elastic jumps"),
+    "jump_energy": ("J", "energy released by elastic jumps"),
+}
+
+_FORMAT = "softafm result 1"
+
+
+def variable(name: str, dims, values) -> xr.Variable:
+    """Return values under a known name, with its unit and long name as attributes."""
+    units, long_name = VARIABLES[name]
+    return xr.Variable(dims, np.asarray(values, float), {"units": units, "long_name": long_name})
+
+
+def describe(thing) -> dict:
+    """Return the kind and the parameters (SI) of a tip, sample, law, motion or solver."""
+    if is_dataclass(thing):
+        values = {f.name: getattr(thing, f.name) for f in fields(thing)}
+    else:
+        values = {"time": thing.time.tolist(), "height": thing.heights.tolist()}
+    return {"kind": thing.kind, **values}
+
+
+def dataset(
+    mode: str,
+    contact,
+    motion,
+    solver,
+    tolerance: float,
+    history: History,
+    observables: dict[str, tuple],
+) -> xr.Dataset:
+    """Assemble a result: the history, the mode's observables (dims, values) and the provenance."""
+    curves = ("tip_height", "force", "contact_radius", "axis_deformation", "viscous_power")
+    data = {name: variable(name, "time", getattr(history, name)) for name in curves}
+    for name in ("jump_time", "jump_energy"):
+        data[name] = variable(name, "jump", getattr(history, name))
+    for name, (dims, values) in observables.items():
+        data[name] = variable(name, dims, values)
+    coordinates = {"time": variable("time", "time", history.time)}
+    if history.profiles is not None:
+        shapes = history.profiles
+        gap = history.tip_height[:, None] + contact.tip.profile(shapes.radius) - shapes.deformation
+        coordinates["r"] = variable("r", "r", shapes.radius)
+        data["deformation"] = variable("deformation", ("time", "r"), shapes.deformation)
+        data["gap"] = variable("gap", ("time", "r"), gap)
+        data["pressure"] = variable("pressure", ("time", "r"), contact.surface.pressure(gap))
+    experiment = {
+        "mode": mode,
+        "tip": describe(contact.tip),
+        "sample": describe(contact.sample),
+        "surface": describe(contact.surface),
+        "motion": describe(motion),
+    }
+    attributes = {
+        "format": _FORMAT,
+        "mode": mode,
+        "experiment": json.dumps(experiment),
+        "solver": json.dumps(describe(solver)),
+        "tolerance": float(tolerance),
+        "softafm_version": softafm.__version__,
+        "created": datetime.now(UTC).isoformat(timespec="seconds"),
+        "tabor_instantaneous": contact.tabor_instantaneous,
+        "tabor_relaxed": contact.tabor_relaxed,
+        "cohesive_length": contact.cohesive_length,
+        "warnings": "\n".join(history.warnings),
+        **{f"solver_{name}": value for name, value in history.diagnostics.items()},
+    }
+    return xr.Dataset(data, coordinates, attributes)
+
+
+def save(result: xr.Dataset, path, *, overwrite: bool = False) -> None:
+    """Write a result to a NetCDF-4 file; an existing file is replaced only with ``overwrite``.
+
+    The file appears whole or not at all.
+
+    Raises
+    ------
+    FileExistsError
+        If the path exists and ``overwrite`` is False.
+    OSError
+        If the folder does not exist or cannot be written.
+    """
+    _write(path, overwrite, lambda part: result.to_netcdf(part, engine="h5netcdf"))
+
+
+def load(path) -> xr.Dataset:
+    """Read a result written by ``save``, whole, and close the file.
+
+    Raises
+    ------
+    FileNotFoundError
+        If there is no such file.
+    ValueError
+        If it is not a result of softafm.
+    """
+    if not Path(path).is_file():
+        raise FileNotFoundError(f"{path}: no such file")
+    try:
+        result = xr.load_dataset(path, engine="h5netcdf")
+    except Exception as problem:
+        raise ValueError(f"{path}: not a readable NetCDF file ({problem})") from None
+    if result.attrs.get("format") != _FORMAT:
+        raise ValueError(f"{path}: not a result of softafm (its attribute 'format' says otherwise)")
+    return result
+
+
+def export(result: xr.Dataset, path, *, overwrite: bool = False) -> None:
+    """Write the curves over time to CSV, or the whole result to HDF5, by the path's suffix.
+
+    CSV columns are named ``name (unit)``; the scalars stand above them as comments.
+
+    Raises
+    ------
+    ValueError
+        If the suffix is neither .csv nor .h5.
+    FileExistsError, OSError
+        As ``save``.
+    """
+    suffix = Path(path).suffix.lower()
+    if suffix == ".h5":
+        save(result, path, overwrite=overwrite)
+    elif suffix == ".csv":
+        _write(path, overwrite, lambda part: _write_csv(result, part))
+    else:
+        raise ValueError(f"{path}: suffix {suffix!r} is not known, must be .csv or .h5")
+
+
+def _write_csv(result, path):
+    curves = [result["time"]] + [v for v in result.data_vars.values() if v.dims == ("time",)]
+    scalars = [v for v in result.data_vars.values() if v.dims == ()]
+    header = [f"{v.name} = {float(v):.9g} {v.units}" for v in scalars]
+    header += [f"experiment = {result.attrs['experiment']}"]
+    names = ",".join(f"{v.name} ({v.units})" for v in curves)
+    with open(path, "w", encoding="utf-8") as out:
+        out.writelines(f"# {line}\n" for line in header)
+        np.savetxt(out, np.column_stack(curves), fmt="%.9g", delimiter=",", header=names, comments="")
+
+
+def _write(path, overwrite, write):
+    """Let ``write`` fill a temporary file beside ``path``, then give it its name."""
+    path = Path(path)
+    if path.exists() and not overwrite:
+        raise FileExistsError(f"{path}: exists already")
+    handle, part = tempfile.mkstemp(prefix=f".{path.name}.", suffix=".part", dir=path.parent)
+    os.close(handle)
+    try:
+        write(part)
+        mask = os.umask(0)
+        os.umask(mask)
+        os.chmod(part, 0o666 & ~mask)
+        os.replace(part, path)
+    except BaseException:
+        os.unlink(part)
+        raise

@@ -1,0 +1,308 @@
+"""The default solver: implicit energy-minimising steps on a mesh that follows the contact edge."""
+
+import warnings
+from dataclasses import dataclass
+from math import ceil, log2, sqrt
+from time import perf_counter
+from typing import ClassVar
+
+import numpy as np
+
+from softafm.compiled import announced_compilation
+from softafm.errors import AccuracyWarning, DivergedError
+from softafm.halfspace.mesh import node_index, unit_mesh
+from softafm.solvers.history import History, Profiles
+
+_COARSEST_SPACING = 0.3
+_EXTENT = 6.0
+_FIRST_LEVEL = 3
+_CHUNK = 256
+
+
+@dataclass(frozen=True)
+class Energy:
+    """Implicit steps that minimise the energy, with exact memory and elastic jumps.
+
+    Each step solves an elastic adhesion problem whose compliance is that of the step and whose
+    offset is the memory, by Newton's method; the memory is integrated exactly for a pressure
+    quadratic in time. Steps adapt to the tolerance. Where no stable shape is near, the surface
+    falls to the next one at frozen memory, and the jump is recorded. The mesh is scaled to the
+    contact edge at every step and its spacing there follows the width of the cohesive zone.
+
+    Parameters
+    ----------
+    finest_spacing
+        Smallest node spacing at the contact edge, in contact radii. A cohesive zone that asks for
+        less raises ``AccuracyWarning``.
+    most_steps
+        Attempted steps after which a run is given up with ``DivergedError``.
+    """
+
+    kind: ClassVar[str] = "energy"
+    finest_spacing: float = 5e-6
+    most_steps: int = 2_000_000
+
+    def solve(self, contact, motion, *, tolerance=1e-2, profiles=False, progress=None) -> History:
+        """Carry the contact, flat and relaxed at first, through the motion.
+
+        Parameters
+        ----------
+        contact, motion
+            ``softafm.Contact`` and a motion, e.g. ``softafm.Triangle``.
+        tolerance
+            Target relative error of forces and energies.
+        profiles
+            Keep the surface shapes.
+        progress
+            Callable of (fraction done, message), or None.
+
+        Raises
+        ------
+        DivergedError
+            If ``most_steps`` do not suffice or no stable shape is found.
+        """
+        started = perf_counter()
+        with announced_compilation():
+            from softafm.solvers import energy_kernel as kernel
+
+            run = _Run(self, kernel, contact, motion, tolerance, profiles)
+        run.rest()
+        stops = np.union1d(motion.breaks, motion.landmarks)
+        span = stops[-1] - stops[0]
+        for stop in stops[1:]:
+            if run.time in motion.breaks:
+                run.start_piece(stop)
+            while not run.advance(stop):
+                if progress is not None:
+                    progress((run.time - stops[0]) / span, f"{run.time - stops[0]:.3g} s")
+        if progress is not None:
+            progress(1.0, "done")
+        history = run.history(perf_counter() - started)
+        for text in history.warnings:
+            warnings.warn(text, AccuracyWarning, stacklevel=4)
+        return history
+
+
+class _Run:
+    """The state of one run between calls of the compiled loop."""
+
+    def __init__(self, solver, kernel, contact, motion, tolerance, keep_shapes):
+        self.solver, self.kernel, self.contact, self.motion = solver, kernel, contact, motion
+        compliance = contact.sample.reduced_compliance
+        surface = contact.surface
+        height, height_parameters = motion.compiled_height
+        profile, tip_parameters = contact.tip.compiled_profile
+        law, potential, law_parameters = surface.compiled_pressure
+        self.functions = height, profile, law, potential
+        self.parameters = kernel.Parameters(
+            height_parameters,
+            tip_parameters,
+            law_parameters,
+            np.concatenate([[compliance.instantaneous], compliance.modes]),
+            np.array(compliance.retardation_times, float),
+        )
+        gap = surface.gap_of_largest_tension
+        self.smallest_frame = 1.5 * sqrt(contact.tip.radius * surface.equilibrium_gap)
+        fastest = min([gap / motion.top_speed, *compliance.retardation_times])
+        strictness = tolerance / 1e-2
+        self.target = 0.2 * strictness**0.2
+        self.growth = 0.25 * min(1.0, strictness**0.1)
+        self.finest_level = max(0, ceil(2 * log2(_COARSEST_SPACING / solver.finest_spacing)))
+        self.level = min(_FIRST_LEVEL, self.finest_level)
+        self.mesh = self._mesh(self.level)
+        self.controls = kernel.Controls(
+            end=0.0,
+            shortest_step=1e-4 * strictness * fastest,
+            top_speed=motion.top_speed,
+            smallest_frame=self.smallest_frame,
+            gap_of_tension=gap,
+            prediction=0.03 * strictness**0.7,
+            memory=0.01 * strictness,
+            force=0.01 * strictness,
+            newton=1e-3 * strictness,
+            slack=2.0,
+            finest=0.0,
+            coarsest=0.0,
+            most_tries=float(solver.most_steps),
+        )
+        n = self.mesh.nodes.size
+        self.fields = np.zeros((kernel.MEMORY + self.parameters.retardation.size, n))
+        self.clock = np.zeros(kernel.CLOCK_SIZE)
+        self.records = np.empty((_CHUNK, kernel.RECORD_WIDTH))
+        self.keep_shapes = keep_shapes
+        self.chunks: list[np.ndarray] = []
+        self.shapes: list[tuple] = []
+        self.meshes, self.most_nodes, self.coarsest = 1, n, (0.0, 0.0)
+
+    @property
+    def time(self) -> float:
+        return self.clock[self.kernel.TIME]
+
+    def _mesh(self, level):
+        spacing = _COARSEST_SPACING * 2 ** (-level / 2)
+        return self.kernel.Mesh(*unit_mesh(spacing, self.growth, _EXTENT))
+
+    def rest(self):
+        """Put the surface in equilibrium with the tip at its first height, without memory."""
+        k, mesh, clock = self.kernel, self.mesh, self.clock
+        height, profile, law, potential = self.functions
+        n, frame = mesh.nodes.size, self.smallest_frame
+        start = float(self.motion.breaks[0])
+        tip, scratch = np.empty(n), np.empty(n)
+        profile(frame * mesh.nodes, self.parameters.tip, tip, n)
+        h0 = height(start, self.parameters.height)
+        u, compliance = self.fields[k.DEFORMATION], self.parameters.compliance[0]
+        done = k.settle(
+            u, np.zeros(n), frame * compliance, h0 + tip, mesh, law, potential,
+            self.parameters.law, 1e-6, np.empty(2),
+        )  # fmt: skip
+        if done < 0:
+            raise DivergedError(f"no stable surface at the first tip height, {h0:g} m")
+        self.fields[k.LOAD] = -u / compliance
+        gap, pressure = h0 + tip - u, np.empty(n)
+        law(gap, self.parameters.law, pressure, scratch, n)
+        force = k.tip_force(
+            pressure, gap, mesh, frame, tip[-1], potential, self.parameters.law, scratch
+        )
+        work = self.contact.surface.work_of_adhesion
+        clock[k.TIME], clock[k.AXIS_GAP] = start, gap[0]
+        clock[k.FRAME] = clock[k.FRAME_EARLIER] = clock[k.FRAME_EARLIEST] = frame
+        clock[k.EDGE] = frame * k.radius_of_gap(gap, mesh.nodes, self.controls.gap_of_tension)
+        clock[k.FORCE] = force
+        clock[k.FORCE_SCALE] = max(abs(force), 0.2 * np.pi * self.contact.tip.radius * work)
+        first = np.zeros((2, k.RECORD_WIDTH))
+        row = first[1]
+        row[k.R_TIME], row[k.R_HEIGHT], row[k.R_FORCE] = start, h0, force
+        row[k.R_EDGE], row[k.R_AXIS], row[k.R_FRAME] = clock[k.EDGE], u[0], frame
+        self._keep(first, u[None].repeat(2, axis=0), 2)
+
+    def start_piece(self, stop):
+        """Forget the past shapes: beyond a break of the motion they do not extrapolate."""
+        k = self.kernel
+        self.clock[k.HISTORY] = 1
+        last = self.clock[k.LAST]
+        self.clock[k.STEP] = 0.1 * last if last > 0 else 0.005 * (stop - self.time)
+
+    def advance(self, stop) -> bool:
+        """Run the compiled loop once; True if it reached ``stop``."""
+        k = self.kernel
+        controls = self.controls._replace(
+            end=float(stop),
+            finest=0.4 * self.target if self.level > 0 else 0.0,
+            coarsest=1.3 * self.target if self.level < self.finest_level else np.inf,
+        )
+        shapes = np.empty((_CHUNK if self.keep_shapes else 0, self.mesh.nodes.size))
+        outcome = k.advance(
+            *self.functions, self.parameters, self.mesh, controls,
+            self.fields, self.clock, self.records, shapes,
+        )  # fmt: skip
+        count = int(self.records[0, 0])
+        self._keep(self.records, shapes, count)
+        if outcome == k.STUCK:
+            raise DivergedError(
+                f"stopped at t = {self.time:g} s after {self.clock[k.TRIES]:.0f} attempted steps "
+                f"(most_steps = {self.solver.most_steps}) without a stable surface in reach",
+                self.history(0.0),
+            )
+        if outcome == k.REMESH:
+            self._remesh(self.records[count - 1, k.R_COARSENESS])
+        return outcome == k.FINISHED
+
+    def _keep(self, records, shapes, count):
+        k = self.kernel
+        self.chunks.append(records[1:count].copy())
+        if self.keep_shapes:
+            mesh = self.mesh
+            for row, shape in zip(records[1:count], shapes[1:count], strict=True):
+                self.shapes.append((row[k.R_FRAME], mesh, shape.copy()))
+        if self.level == self.finest_level:
+            coarseness = records[1:count, k.R_COARSENESS]
+            if coarseness.size and coarseness.max() > self.coarsest[0]:
+                edge = records[1 + coarseness.argmax(), k.R_EDGE]
+                self.coarsest = float(coarseness.max()), float(edge)
+
+    def _remesh(self, coarseness):
+        """Change to the mesh whose spacing suits the cohesive zone as it is now."""
+        k, old = self.kernel, self.mesh
+        spacing = old.edge_spacing * self.target / coarseness
+        level = ceil(2 * log2(_COARSEST_SPACING / spacing) - 1e-9)
+        self.level = min(max(level, 0), self.finest_level)
+        self.mesh = new = self._mesh(self.level)
+        fields = np.empty((self.fields.shape[0], new.nodes.size))
+        for before, after in zip(self.fields, fields, strict=True):
+            k.transfer(
+                before, old.nodes.size, old.nodes[-1], old.edge_spacing, old.growth, 1.0,
+                new.nodes, after,
+            )  # fmt: skip
+        self.fields = fields
+        self.meshes += 1
+        self.most_nodes = max(self.most_nodes, new.nodes.size)
+
+    def history(self, seconds) -> History:
+        """Collect what was recorded."""
+        k = self.kernel
+        records = np.concatenate(self.chunks)
+        time, jumped = records[:, k.R_TIME], records[:, k.R_JUMP] != 0
+        breaks = np.flatnonzero(np.isin(time, self.motion.breaks[1:-1]))
+        cuts = sorted([(i, i + 1) for i in breaks] + [(i, i) for i in np.flatnonzero(jumped)])
+        starts = [0] + [start for start, _ in cuts]
+        ends = [end for _, end in cuts] + [time.size]
+        return History(
+            time=time,
+            tip_height=records[:, k.R_HEIGHT],
+            force=records[:, k.R_FORCE],
+            contact_radius=records[:, k.R_EDGE],
+            axis_deformation=records[:, k.R_AXIS],
+            viscous_power=records[:, k.R_LOSS],
+            pieces=tuple(slice(int(a), int(b)) for a, b in zip(starts, ends, strict=True)),
+            jump_time=time[jumped],
+            jump_energy=records[jumped, k.R_JUMP],
+            profiles=self._profiles() if self.keep_shapes else None,
+            diagnostics={
+                "steps": time.size - 1,
+                "attempted_steps": int(self.clock[k.TRIES]),
+                "newton_iterations": int(self.clock[k.NEWTONS]),
+                "meshes": self.meshes,
+                "most_nodes": self.most_nodes,
+                "wall_time": seconds,
+            },
+            warnings=self._warnings(),
+        )
+
+    def _warnings(self) -> tuple[str, ...]:
+        coarseness, edge = self.coarsest
+        if coarseness <= 1.3 * self.target:
+            return ()
+        spacing = self.mesh.edge_spacing * edge
+        surface = self.contact.surface
+        factor = sqrt(coarseness / self.target)
+        return (
+            f"the cohesive zone at the contact edge, {spacing / coarseness:.2g} m wide, is resolved "
+            f"by nodes {spacing:.2g} m apart (finest_spacing = {self.solver.finest_spacing:g} contact "
+            f"radii) where {self.target * spacing / coarseness:.2g} m is needed: forces and above all "
+            f"the loop energy may be wrong. Lower solvers.Energy(finest_spacing=...), or enlarge z0 "
+            f"at fixed work of adhesion, LennardJones.from_work_of_adhesion("
+            f"W={surface.work_of_adhesion:.4g}, z0={factor * surface.equilibrium_gap:.2g})",
+        )
+
+    def _profiles(self) -> Profiles:
+        """Interpolate every shape to radii common to all."""
+        from scipy.interpolate import make_interp_spline
+
+        widest = max(frame for frame, _, _ in self.shapes)
+        radius = 3 * widest * np.linspace(0, 1, 301)
+        deformation = np.empty((len(self.shapes), radius.size))
+        for row, (frame, mesh, shape) in zip(deformation, self.shapes, strict=True):
+            spline = make_interp_spline(np.arange(1 - shape.size, shape.size), mirrored(shape), k=5)
+            index = node_index(radius / frame, mesh.edge_spacing, mesh.growth)
+            last = shape.size - 1
+            end = frame * mesh.nodes[-1]
+            row[:] = np.where(
+                index <= last, spline(np.minimum(index, last)), shape[-1] * end / np.fmax(radius, end)
+            )
+        return Profiles(radius, deformation)
+
+
+def mirrored(values):
+    """Continue values at nodes 0 .. n−1 evenly to nodes 1−n .. n−1."""
+    return np.concatenate([values[:0:-1], values])

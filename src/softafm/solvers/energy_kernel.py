@@ -1,0 +1,570 @@
+"""Compiled loops of the energy solver: equilibrate, settle, advance.
+
+Lengths in m, pressures in Pa, times in s. The surface is known on nodes r_i = a ξ_i of a unit mesh
+(softafm.halfspace.mesh) in a frame of radius a that follows the contact edge. With the stiffness
+S = G⁻¹ and masses m of the unit mesh, u = v − c K p reads S (u − v)/(a c) + m p(h) = 0: the
+stationarity of
+
+    Π/(2πa²) = (u − v)ᵀ S (u − v)/(2 a c) + Σ m_i Φ(h_i),     h = h0 + g − u.
+
+Memory is carried as displacements: q = K p and y_m = K w_m with τ_m ẏ_m = q − y_m, so that
+u = −(J_g q + Σ J_m y_m), and a change of frame is an interpolation of smooth fields.
+"""
+
+from math import asinh, exp, floor, pi
+from typing import NamedTuple
+
+import numpy as np
+from numba import float64, int64, njit, types
+
+from softafm.compiled import HEIGHT, POTENTIAL, PRESSURE, PROFILE, pointer
+from softafm.solvers.dense import factorise, multiply, solve_factorised
+
+_FAST = {"reassoc", "contract", "nsz", "arcp"}
+_V = float64[::1]
+_M = float64[:, ::1]
+_CONST = types.Array(float64, 1, "C", readonly=True)
+_CONST2 = types.Array(float64, 2, "C", readonly=True)
+
+# Why `advance` came back.
+FINISHED, FULL, REMESH, STUCK = range(4)
+
+# Rows of `fields`: the last three shapes, the last two loads q, then one row per memory mode y_m.
+DEFORMATION, EARLIER, EARLIEST, LOAD, LOAD_EARLIER, MEMORY = range(6)
+
+# Entries of `clock`: the instant, the step to try, the last two steps; radii of the frames of the
+# last three shapes; contact-edge radius, now and before; gap on the axis; the last three forces and
+# the largest so far; the number of past shapes fit for extrapolation; attempted steps and
+# Newton iterations so far.
+TIME, STEP, LAST, BEFORE = range(4)
+FRAME, FRAME_EARLIER, FRAME_EARLIEST, EDGE, EDGE_EARLIER, AXIS_GAP = range(4, 10)
+FORCE, FORCE_EARLIER, FORCE_EARLIEST, FORCE_SCALE = range(10, 14)
+HISTORY, TRIES, NEWTONS = range(14, 17)
+CLOCK_SIZE = 17
+
+# Columns of a record. COARSENESS is the node spacing at the edge over the width of the cohesive
+# zone; JUMP the energy released if the step was an elastic jump.
+R_TIME, R_HEIGHT, R_FORCE, R_EDGE, R_AXIS, R_LOSS, R_COARSENESS, R_FRAME, R_JUMP = range(9)
+RECORD_WIDTH = 9
+
+# Columns of the memory weights.
+_DECAY, _EARLIER, _NOW, _NEW, _CURVATURE = range(5)
+
+
+class Mesh(NamedTuple):
+    """A ``softafm.halfspace.mesh.UnitMesh`` as the kernels take it."""
+
+    nodes: np.ndarray
+    masses: np.ndarray
+    stiffness: np.ndarray
+    edge_spacing: float
+    growth: float
+
+
+class Parameters(NamedTuple):
+    """Parameters of height, tip profile and surface law; J_g, J_1, ... in 1/Pa; τ_1, ... in s."""
+
+    height: np.ndarray
+    tip: np.ndarray
+    law: np.ndarray
+    compliance: np.ndarray
+    retardation: np.ndarray
+
+
+class Controls(NamedTuple):
+    """What steers ``advance``: times s, lengths m, speed m/s, the rest dimensionless.
+
+    ``prediction``, ``memory`` and ``force`` are the errors allowed per step; ``newton`` the accuracy
+    of an equilibrium; all relative to the gap, but ``force`` to the largest force so far.
+    ``slack`` is how far the frame may trail the edge, in edge spacings; remeshing is asked for when
+    the coarseness of a record leaves ``finest`` to ``coarsest``.
+    """
+
+    end: float
+    shortest_step: float
+    top_speed: float
+    smallest_frame: float
+    gap_of_tension: float
+    prediction: float
+    memory: float
+    force: float
+    newton: float
+    slack: float
+    finest: float
+    coarsest: float
+    most_tries: float
+
+
+MESH = types.NamedTuple((_CONST, _CONST, _CONST2, float64, float64), Mesh)
+PARAMETERS = types.NamedUniTuple(_V, len(Parameters._fields), Parameters)
+CONTROLS = types.NamedUniTuple(float64, len(Controls._fields), Controls)
+
+
+@njit((_V, int64, float64, float64, float64, float64, _CONST, _V), cache=True, fastmath=_FAST)
+def transfer(values, n, end, edge_spacing, growth, stretch, nodes, out):
+    """Evaluate a displacement field of one mesh at radii ``stretch``·``nodes`` of another.
+
+    ``values`` (n,) live on a mesh of this ``edge_spacing`` and ``growth`` whose last node is
+    ``end``. Six-point Lagrange interpolation in the node index, even about the axis; beyond the
+    last node the field of a concentrated load, 1/r.
+    """
+    scale = growth / edge_spacing
+    for i in range(nodes.size):
+        r = nodes[i] * stretch
+        if r > end:
+            out[i] = values[n - 1] * end / r
+            continue
+        x = (asinh(scale * (r - 1.0)) + asinh(scale * (r + 1.0))) / growth
+        base = min(int(floor(x)) - 2, n - 6)
+        t0 = x - base
+        t1, t2, t3, t4, t5 = t0 - 1.0, t0 - 2.0, t0 - 3.0, t0 - 4.0, t0 - 5.0
+        out[i] = (
+            t1 * t2 * t3 * t4 * t5 / -120.0 * values[abs(base)]
+            + t0 * t2 * t3 * t4 * t5 / 24.0 * values[abs(base + 1)]
+            + t0 * t1 * t3 * t4 * t5 / -12.0 * values[abs(base + 2)]
+            + t0 * t1 * t2 * t4 * t5 / 12.0 * values[abs(base + 3)]
+            + t0 * t1 * t2 * t3 * t5 / -24.0 * values[abs(base + 4)]
+            + t0 * t1 * t2 * t3 * t4 / 120.0 * values[abs(base + 5)]
+        )
+
+
+@njit((_V, MESH, float64, _V), cache=True)
+def reframe(values, mesh, stretch, out):
+    """A field in a frame ``stretch`` times larger, on the same mesh."""
+    if abs(stretch - 1.0) < 1e-12:
+        out[:] = values
+    else:
+        n = values.size
+        transfer(
+            values, n, mesh.nodes[n - 1], mesh.edge_spacing, mesh.growth, stretch, mesh.nodes, out
+        )
+
+
+@njit(float64(_V, _CONST, float64), cache=True)
+def radius_of_gap(gap, nodes, value):
+    """Smallest radius (in units of the frame) where the gap reaches ``value``."""
+    if gap[0] >= value:
+        return 0.0
+    for i in range(1, nodes.size):
+        if gap[i] >= value:
+            part = (value - gap[i - 1]) / (gap[i] - gap[i - 1])
+            return nodes[i - 1] + part * (nodes[i] - nodes[i - 1])
+    return nodes[nodes.size - 1]
+
+
+@njit((MESH, float64, _V, _V, float64, _M), cache=True, fastmath=_FAST)
+def _assemble(mesh, scale, slope, gradient, shift, hessian):
+    """Upper triangle of S·scale − diag(m (p' − shift))."""
+    n = gradient.size
+    for i in range(n):
+        for j in range(i, n):
+            hessian[i, j] = mesh.stiffness[i, j] * scale
+        hessian[i, i] += mesh.masses[i] * (shift - slope[i])
+
+
+@njit(
+    int64(_V, _V, float64, _V, MESH, pointer(PRESSURE), _V, float64, float64, _M, _M),
+    cache=True,
+    fastmath=_FAST,
+)
+def equilibrate(u, v, ac, standoff, mesh, law, parameters, smallest_gap, accuracy, hessian, work):
+    """Newton's method for u = v − c K p(standoff − u) from a good guess, in place.
+
+    ``ac`` is frame radius times compliance, ``standoff`` the gap to the flat surface. Leaves the
+    gap and the pressure in rows 0 and 1 of ``work``. Returns the number of iterations, negative if
+    the guess was not near a stable shape (an indefinite Hessian, or no convergence).
+    """
+    n = u.size
+    gap, pressure, slope, change = work[0], work[1], work[2], work[3]
+    scale = 1.0 / ac
+    for i in range(n):
+        gap[i] = standoff[i] - u[i]
+        if not gap[i] > smallest_gap:
+            return -1
+    previous = 0.5
+    for iteration in range(1, 9):
+        law(gap, parameters, pressure, slope, n)
+        for i in range(n):
+            u[i] -= v[i]
+        multiply(mesh.stiffness, u, change, n)
+        for i in range(n):
+            u[i] += v[i]
+            change[i] = -(change[i] * scale + mesh.masses[i] * pressure[i])
+        _assemble(mesh, scale, slope, change, 0.0, hessian)
+        if not factorise(hessian, n):
+            return -iteration
+        solve_factorised(hessian, change, n)
+        largest = 0.0
+        for i in range(n):
+            largest = max(largest, abs(change[i]) / gap[i])
+        if not largest < previous:
+            return -iteration
+        for i in range(n):
+            u[i] += change[i]
+            gap[i] = standoff[i] - u[i]
+        if largest < accuracy:
+            for i in range(n):
+                pressure[i] -= slope[i] * change[i]
+            return iteration
+        previous = largest
+    return -8
+
+
+@njit(
+    int64(_V, _V, float64, _V, MESH, pointer(PRESSURE), pointer(POTENTIAL), _V, float64, _V),
+    cache=True,
+    fastmath=_FAST,
+)
+def settle(u, v, ac, standoff, mesh, law, potential, parameters, accuracy, energy):
+    """Descend from ``u``, in place, to a stable shape of u = v − c K p(standoff − u).
+
+    Newton's method on Π, its Hessian shifted until it is positive and no gap changes by more than
+    40 %, each step shortened until Π falls. ``energy`` receives Π/(2πa²) before and after. Returns
+    the number of iterations, or -1 if 2000 do not suffice.
+    """
+    n = u.size
+    hessian = np.empty((n, n))
+    gap, pressure, slope, density = np.empty(n), np.empty(n), np.empty(n), np.empty(n)
+    change, gradient, trial, strain = np.empty(n), np.empty(n), np.empty(n), np.empty(n)
+    scale = 1.0 / ac
+    shift = 0.0
+    for iteration in range(1, 2001):
+        for i in range(n):
+            gap[i] = standoff[i] - u[i]
+            trial[i] = u[i] - v[i]
+        law(gap, parameters, pressure, slope, n)
+        potential(gap, parameters, density, n)
+        multiply(mesh.stiffness, trial, strain, n)
+        value, steepest = 0.0, 0.0
+        for i in range(n):
+            value += 0.5 * trial[i] * strain[i] * scale + mesh.masses[i] * density[i]
+            gradient[i] = strain[i] * scale + mesh.masses[i] * pressure[i]
+            steepest = max(steepest, abs(slope[i]))
+        if iteration == 1:
+            energy[0] = value
+        energy[1] = value
+        while True:
+            for i in range(n):
+                change[i] = -gradient[i]
+            _assemble(mesh, scale, slope, change, shift, hessian)
+            if factorise(hessian, n):
+                solve_factorised(hessian, change, n)
+                largest, downhill = 0.0, 0.0
+                for i in range(n):
+                    largest = max(largest, abs(change[i]) / gap[i])
+                    downhill += change[i] * gradient[i]
+                if largest < 0.4:
+                    break
+            shift = max(4.0 * shift, 1e-4 * steepest)
+        if shift == 0.0 and largest < accuracy:
+            for i in range(n):
+                u[i] += change[i]
+            return iteration
+        length = 1.0
+        while length > 1e-8:
+            for i in range(n):
+                trial[i] = u[i] + length * change[i]
+                gap[i] = standoff[i] - trial[i]
+                trial[i] -= v[i]
+            potential(gap, parameters, density, n)
+            multiply(mesh.stiffness, trial, strain, n)
+            lower = 0.0
+            for i in range(n):
+                lower += 0.5 * trial[i] * strain[i] * scale + mesh.masses[i] * density[i]
+            if lower <= value + 1e-4 * length * downhill + 1e-14 * abs(value):
+                break
+            length *= 0.5
+        for i in range(n):
+            u[i] += length * change[i]
+        shift = 0.25 * shift if shift > 4e-4 * steepest else 0.0
+    return -1
+
+
+@njit(
+    float64(_V, _V, MESH, float64, float64, pointer(POTENTIAL), _V, _V), cache=True, fastmath=_FAST
+)
+def tip_force(pressure, gap, mesh, frame, tip_end, potential, parameters, scratch):
+    """Force on the tip, N: the mesh's share and that of the flat surface beyond it.
+
+    Beyond the last node, where the profile is ``tip_end``, r dr = (r²/2g) dh on a paraboloid and
+    the integral of p is the potential Φ.
+    """
+    n = gap.size
+    total = 0.0
+    for i in range(n):
+        total += mesh.masses[i] * pressure[i]
+    scratch[0] = gap[n - 1]
+    potential(scratch, parameters, scratch, 1)
+    end = mesh.nodes[n - 1]
+    return 2.0 * pi * frame * frame * (total + end * end / (2.0 * tip_end) * scratch[0])
+
+
+@njit((float64, float64, int64, _V, _M), cache=True)
+def memory_weights(step, last, order, retardation, weights):
+    """Weights of y⁺ = decay·y + earlier·q₋ + now·q + new·q⁺ over a step, one row per mode.
+
+    Exact for q linear in time, or with ``order`` 2 quadratic through the instant ``last`` before.
+    With k = step/τ: moments M_j = ∫₀¹ k e^(−k(1−s)) s^j ds; curvature = M_2 − M_1.
+    """
+    for m in range(retardation.size):
+        k = step / retardation[m]
+        if k < 1e-2:
+            m0 = k * (1.0 - k * (1.0 / 2 - k * (1.0 / 6 - k / 24)))
+            m1 = k * (1.0 / 2 - k * (1.0 / 6 - k * (1.0 / 24 - k / 120)))
+            m2 = k * (1.0 / 3 - k * (1.0 / 12 - k * (1.0 / 60 - k / 360)))
+        else:
+            m0 = 1.0 - exp(-k)
+            m1 = 1.0 - m0 / k
+            m2 = 1.0 - 2.0 * m1 / k
+        row = weights[m]
+        row[_DECAY], row[_EARLIER], row[_NOW], row[_NEW] = 1.0 - m0, 0.0, m0 - m1, m1
+        row[_CURVATURE] = m2 - m1
+        if order == 2:
+            ratio = last / step
+            row[_EARLIER] += row[_CURVATURE] / (ratio * (1.0 + ratio))
+            row[_NOW] -= row[_CURVATURE] / ratio
+            row[_NEW] += row[_CURVATURE] / (1.0 + ratio)
+
+
+@njit((int64, float64, float64, float64, _V), cache=True)
+def extrapolation_weights(history, step, last, before, weights):
+    """Weights of the last shapes that extrapolate them by ``step``: order ``history`` − 1."""
+    weights[0], weights[1], weights[2] = 1.0, 0.0, 0.0
+    if history == 2:
+        weights[0], weights[1] = 1.0 + step / last, -step / last
+    elif history == 3:
+        near, far = step + last, step + last + before
+        weights[0] = near * far / (last * (last + before))
+        weights[1] = -step * far / (last * before)
+        weights[2] = step * near / (before * (last + before))
+
+
+@njit(float64(float64, _V, MESH, CONTROLS), cache=True)
+def following_frame(step, clock, mesh, controls):
+    """Frame radius for the next step: the edge carried on at its speed, held within the slack."""
+    edge = clock[EDGE]
+    if clock[HISTORY] > 1:
+        ahead = (clock[EDGE] - clock[EDGE_EARLIER]) * step / clock[LAST]
+        edge += min(max(ahead, -0.2 * edge), 0.2 * edge)
+    frame = max(controls.smallest_frame, edge)
+    if abs(frame - clock[FRAME]) < controls.slack * mesh.edge_spacing * clock[FRAME]:
+        return clock[FRAME]
+    return frame
+
+
+@njit((float64, float64, int64, _M, _V, MESH, _V, _V, _V), cache=True)
+def predict(frame, step, history, fields, clock, mesh, weights, guess, shape):
+    """Extrapolate the last ``history`` shapes to the new frame, as seen riding on the edge."""
+    n = mesh.nodes.size
+    speed = 0.0
+    if history > 1:
+        speed = (clock[EDGE] - clock[EDGE_EARLIER]) / clock[LAST]
+    ago = step
+    guess[:] = 0.0
+    for k in range(history):
+        riding = max(frame - speed * ago, 0.5 * frame)
+        reframe(fields[DEFORMATION + k], mesh, riding / clock[FRAME + k], shape)
+        for i in range(n):
+            guess[i] += weights[k] * shape[i]
+        ago += clock[LAST + k]
+
+
+@njit((_V, float64, float64, float64, float64), cache=True)
+def _move_clock(clock, step, frame, edge, force):
+    clock[FORCE_EARLIEST], clock[FORCE_EARLIER], clock[FORCE] = (
+        clock[FORCE_EARLIER], clock[FORCE], force,
+    )
+    clock[FORCE_SCALE] = max(clock[FORCE_SCALE], abs(force))
+    clock[FRAME_EARLIEST], clock[FRAME_EARLIER], clock[FRAME] = (
+        clock[FRAME_EARLIER], clock[FRAME], frame,
+    )
+    clock[EDGE_EARLIER], clock[EDGE] = clock[EDGE], edge
+    clock[BEFORE], clock[LAST] = clock[LAST], step
+
+
+@njit(
+    int64(
+        pointer(HEIGHT), pointer(PROFILE), pointer(PRESSURE), pointer(POTENTIAL), PARAMETERS,
+        MESH, CONTROLS, _M, _V, _M, _M,
+    ),
+    cache=True,
+    fastmath=_FAST,
+)  # fmt: skip
+def advance(
+    height, profile, law, potential, parameters, mesh, controls, fields, clock, records, shapes
+):
+    """Step the surface in time until ``controls.end``, full records, or a need to remesh.
+
+    ``fields`` (MEMORY + modes, n) and ``clock`` hold the state and are updated. Every accepted step
+    fills a row of ``records``, from row 1 on, and of ``shapes`` (the deformation) if that has rows;
+    ``records[0, 0]`` receives the number of rows used. Returns why it stopped.
+    """
+    n = mesh.nodes.size
+    compliance, retardation = parameters.compliance, parameters.retardation
+    modes = retardation.size
+    hessian = np.empty((n, n))
+    newton_work = np.empty((4, n))
+    gap, pressure = newton_work[0], newton_work[1]
+    work = np.empty((9, n))
+    u, v, guess, standoff, scratch = work[0], work[1], work[2], work[3], work[4]
+    load, load_earlier, load_new, tip = work[5], work[6], work[7], work[8]
+    memory = np.empty((modes, n))
+    remember = np.empty((modes, 5))
+    weights = np.empty(3)
+    energy = np.empty(2)
+    count = 1
+    outcome = FULL
+
+    while count < records.shape[0]:
+        left = controls.end - clock[TIME]
+        if left <= 0.0:
+            outcome = FINISHED
+            break
+        if clock[TRIES] >= controls.most_tries:
+            outcome = STUCK
+            break
+        clock[TRIES] += 1
+        step = clock[STEP]
+        if clock[AXIS_GAP] > 3.0 * controls.gap_of_tension:
+            # Do not leap over a contact that has not been felt yet.
+            step = min(step, 0.3 * clock[AXIS_GAP] / controls.top_speed)
+        if step > 0.5 * left:
+            step = left if step >= left else 0.5 * left
+        history = int(clock[HISTORY])
+
+        frame = following_frame(step, clock, mesh, controls)
+        stretch = frame / clock[FRAME]
+        reframe(fields[LOAD], mesh, stretch, load)
+        for m in range(modes):
+            reframe(fields[MEMORY + m], mesh, stretch, memory[m])
+        order = min(history, 2)
+        if order == 2:
+            reframe(fields[LOAD_EARLIER], mesh, frame / clock[FRAME_EARLIER], load_earlier)
+        else:
+            load_earlier[:] = 0.0
+        memory_weights(step, clock[LAST], order, retardation, remember)
+
+        # The step is an elastic contact of compliance c on a surface displaced by v.
+        c = compliance[0]
+        v[:] = 0.0
+        for m in range(modes):
+            c += compliance[m + 1] * remember[m, _NEW]
+            for i in range(n):
+                memory[m, i] = (
+                    remember[m, _DECAY] * memory[m, i]
+                    + remember[m, _EARLIER] * load_earlier[i]
+                    + remember[m, _NOW] * load[i]
+                )
+                v[i] -= compliance[m + 1] * memory[m, i]
+        for i in range(n):
+            scratch[i] = frame * mesh.nodes[i]
+        profile(scratch, parameters.tip, tip, n)
+        h0 = height(clock[TIME] + step, parameters.height)
+        for i in range(n):
+            standoff[i] = h0 + tip[i]
+
+        extrapolation_weights(history, step, clock[LAST], clock[BEFORE], weights)
+        predict(frame, step, history, fields, clock, mesh, weights, guess, scratch)
+        u[:] = guess
+        iterations = equilibrate(
+            u, v, frame * c, standoff, mesh, law, parameters.law,
+            0.3 * controls.gap_of_tension, controls.newton, hessian, newton_work,
+        )  # fmt: skip
+        clock[NEWTONS] += abs(iterations)
+
+        jump = 0.0
+        if iterations < 0:
+            if step > controls.shortest_step:
+                clock[STEP] = max(0.2 * step, 0.999 * controls.shortest_step)
+                continue
+            # No stable shape nearby, however short the step: fall to the next one.
+            reframe(fields[DEFORMATION], mesh, stretch, u)
+            guess[:] = u
+            iterations = settle(
+                u, v, frame * c, standoff, mesh, law, potential, parameters.law,
+                controls.newton, energy,
+            )  # fmt: skip
+            clock[NEWTONS] += abs(iterations)
+            if iterations < 0:
+                outcome = STUCK
+                break
+            moved = 0.0
+            for i in range(n):
+                gap[i] = standoff[i] - u[i]
+                moved = max(moved, abs(u[i] - guess[i]) / gap[i])
+            law(gap, parameters.law, pressure, scratch, n)
+            if moved > 0.1:
+                jump = 2.0 * pi * frame * frame * (energy[0] - energy[1])
+            history = 0
+
+        for i in range(n):
+            load_new[i] = (v[i] - u[i]) / c
+        force = tip_force(pressure, gap, mesh, frame, tip[n - 1], potential, parameters.law, scratch)
+
+        growth = 1.0
+        if history > 0:
+            error = 0.0
+            for i in range(n):
+                error = max(error, abs(u[i] - guess[i]) / (controls.prediction * gap[i]))
+            if order == 2:
+                ratio = clock[LAST] / step
+                curvature = 0.0
+                for m in range(modes):
+                    curvature += compliance[m + 1] * remember[m, _CURVATURE]
+                for i in range(n):
+                    bend = (load_new[i] + load_earlier[i] / ratio) / (1.0 + ratio) - load[i] / ratio
+                    error = max(error, abs(curvature * bend) / (controls.memory * gap[i]))
+            foreseen = 0.0
+            for k in range(history):
+                foreseen += weights[k] * clock[FORCE + k]
+            scale = max(clock[FORCE_SCALE], abs(force))
+            error = max(error, abs(force - foreseen) / (controls.force * scale))
+            growth = 0.85 * max(error, 1e-6) ** (-1.0 / history)
+            if error > 1.5 and step > controls.shortest_step:
+                clock[STEP] = max(step * max(0.25, growth), 0.999 * controls.shortest_step)
+                continue
+
+        # Accept the step.
+        loss = 0.0
+        for m in range(modes):
+            for i in range(n):
+                memory[m, i] += remember[m, _NEW] * load_new[i]
+                guess[i] = load_new[i] - memory[m, i]
+                fields[MEMORY + m, i] = memory[m, i]
+            multiply(mesh.stiffness, guess, scratch, n)
+            product = 0.0
+            for i in range(n):
+                product += guess[i] * scratch[i]
+            loss += 2.0 * pi * frame * compliance[m + 1] / retardation[m] * product
+        for i in range(n):
+            fields[EARLIEST, i] = fields[EARLIER, i]
+            fields[EARLIER, i] = fields[DEFORMATION, i]
+            fields[DEFORMATION, i] = u[i]
+            fields[LOAD_EARLIER, i] = fields[LOAD, i]
+            fields[LOAD, i] = load_new[i]
+        edge = frame * radius_of_gap(gap, mesh.nodes, controls.gap_of_tension)
+        _move_clock(clock, step, frame, edge, force)
+        clock[TIME] = controls.end if step == left else clock[TIME] + step
+        clock[STEP] = step * min(2.5, max(0.3, growth))
+        clock[HISTORY] = min(history + 1, 3)
+        clock[AXIS_GAP] = gap[0]
+
+        # The cohesive zone as it is now: where the gap doubles outside the edge.
+        coarseness = 0.0
+        if edge > 0.0:
+            zone = frame * radius_of_gap(gap, mesh.nodes, 2.0 * controls.gap_of_tension) - edge
+            coarseness = frame * mesh.edge_spacing / zone
+        row = records[count]
+        row[R_TIME], row[R_HEIGHT], row[R_FORCE], row[R_EDGE] = clock[TIME], h0, force, edge
+        row[R_AXIS], row[R_LOSS], row[R_COARSENESS] = u[0], loss, coarseness
+        row[R_FRAME], row[R_JUMP] = frame, jump
+        if shapes.shape[0] > count:
+            for i in range(n):
+                shapes[count, i] = u[i]
+        count += 1
+        if edge > 0.0 and not controls.finest <= coarseness <= controls.coarsest:
+            outcome = REMESH
+            break
+
+    records[0, 0] = count
+    return outcome
