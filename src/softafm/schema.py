@@ -11,7 +11,7 @@ from typing import Annotated, Any
 from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, ValidationInfo, create_model
 
 from softafm import units
-from softafm._validate import finite
+from softafm._validate import finite, tolerance_of
 from softafm.measured import read_trajectory
 from softafm.motions import Sine, Trajectory, Triangle
 from softafm.rheology import Elastic, GeneralizedKelvinVoigt, StandardLinearSolid
@@ -39,9 +39,10 @@ def _number(written: Any) -> float:
 
 def _tolerance(written: Any) -> float:
     number = _number(written)
-    if not 0 < number < 1:
-        raise ValueError("must be a number above 0 and below 1, such as 0.01")
-    return number
+    try:
+        return tolerance_of(number)
+    except ValueError as error:
+        raise ValueError(str(error).partition(": ")[2]) from None
 
 
 def _count(written: Any) -> int:
@@ -59,7 +60,7 @@ def _flag(written: Any) -> bool:
 def _list(written: Any) -> Any:
     if not isinstance(written, list) or not written:
         raise ValueError("must be a list, in square brackets, with at least one entry")
-    return written
+    return tuple(written)
 
 
 def _file(written: Any, info: ValidationInfo) -> Path:
@@ -105,7 +106,7 @@ class Table(BaseModel):
         if len(present) == 1 and len(keys) == len(present[0]):
             return present[0]
         choices = ", or ".join(" and ".join(a) for a in alternatives)
-        found = " and ".join(keys) if keys else "none of them"
+        found = ", ".join(keys) if keys else "none of them"
         raise ValueError(f"give {choices}; found {found}")
 
 

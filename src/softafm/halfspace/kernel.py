@@ -49,5 +49,5 @@ def _correct_near_axis(matrix, nodes, masses):
     pressure = np.exp(-((nodes / width) ** 2))
     exact = width * np.sqrt(np.pi) * i0e((nodes / width) ** 2 / 2)
     error = exact - matrix @ (masses * pressure)
-    near = np.flatnonzero((nodes > 0) & (nodes < 0.7))
+    near = np.flatnonzero(nodes < 0.7)
     matrix[near, near] += error[near] / (masses[near] * pressure[near])

@@ -6,8 +6,8 @@ Nodes are ξ_j = ξ(j), j = 0..n−1, with r = a·ξ and a the radius of the con
 
 has spacing δ at the edge ξ = 1, grows by a factor e^g per node away from it, and is odd in ξ, so
 even functions of radius stay even in j. Sums over nodes with weights ξ dξ/dj are then trapezoidal
-rules in j for smooth integrands: they converge faster than any power of the spacing, apart from the
-end at the axis, which takes its Euler-Maclaurin term as a mass of its own.
+rules in j for smooth integrands, which converge faster than any power of the spacing once the
+Euler-Maclaurin terms of their two ends are folded into the masses there.
 """
 
 from functools import lru_cache
@@ -51,6 +51,22 @@ def _spacing(radius, edge_spacing: float, growth: float):
     return 1 / (inner + outer)
 
 
+def _masses(nodes, spacing):
+    """Weights of ∫ f ξ dξ = Σ masses·f for even f: corrected trapezoids in j.
+
+    At the axis w = ξ dξ/dj is odd, w ≈ w₁ j + w₃ j³/6; the Euler-Maclaurin terms (f w)'/12 and
+    −(f w)‴/720, with f″ ≈ 2 (f(1) − f(0)), fall on nodes 0 and 1. The last three nodes carry
+    Gregory's weights.
+    """
+    masses = nodes * spacing
+    slope = spacing[0] ** 2
+    third = 6 * (masses[1] - slope)
+    masses[0] = slope / 12 - (third - 6 * slope) / 720
+    masses[1] -= slope / 120
+    masses[-3:] *= 23 / 24, 7 / 6, 3 / 8
+    return masses
+
+
 @lru_cache(maxsize=64)
 def unit_mesh(edge_spacing: float, growth: float, extent: float) -> UnitMesh:
     """Build the mesh out to ξ = ``extent`` (or just beyond) and its stiffness; cached.
@@ -70,9 +86,7 @@ def unit_mesh(edge_spacing: float, growth: float, extent: float) -> UnitMesh:
     nodes[0] = 0.0
     spacing = _spacing(nodes, edge_spacing, growth)
 
-    masses = nodes * spacing
-    masses[0] = spacing[0] ** 2 / 12
-    masses[-1] /= 2
+    masses = _masses(nodes, spacing)
     stiffness = np.linalg.inv(influence(nodes, spacing, masses))
     stiffness = (stiffness + stiffness.T) / 2
     for array in (nodes, masses, stiffness):

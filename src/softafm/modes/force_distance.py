@@ -61,10 +61,11 @@ def force_distance(
             contact, motion, tolerance=tolerance, profiles=profiles, progress=report
         )
     force = history.force
+    lowest = history.time[np.argmin(history.tip_height)]
     observables = {
-        "force_max": ((), force.max()),
-        "force_min": ((), force.min()),
-        "force_min_approach": ((), force[: np.argmin(history.tip_height) + 1].min()),
+        "force_max": ((), history.extreme(force, 1)),
+        "force_min": ((), history.extreme(force, -1)),
+        "force_min_approach": ((), history.extreme(force, -1, stop=lowest)),
         "loop_energy": ((), -history.integrate(force, motion.velocity)),
         "viscous_loss": ((), history.integrate(history.viscous_power, np.ones_like)),
     }

@@ -77,8 +77,8 @@ def tapping_cycle(
 
     virial = each_cycle(lambda t: motion.height(t) - motion.mean_height) / period
     dissipation = -each_cycle(motion.velocity)
-    last = history.time >= tops[-2] - 1e-9 * period
-    approach = last & (history.time <= tops[-2] + period * (0.5 + 1e-9))
+    start = tops[-2]
+    last = history.time >= start
     force = history.force
     axis_gap = history.tip_height - history.axis_deformation
     observables = {
@@ -86,15 +86,15 @@ def tapping_cycle(
         "dissipation": ((), dissipation[-1]),
         "cycle_virial": ("cycle", virial),
         "cycle_dissipation": ("cycle", dissipation),
-        "force_max": ((), force[last].max()),
-        "force_min": ((), force[last].min()),
-        "force_min_approach": ((), force[approach].min()),
+        "force_max": ((), history.extreme(force, 1, start)),
+        "force_min": ((), history.extreme(force, -1, start)),
+        "force_min_approach": ((), history.extreme(force, -1, start, start + period / 2)),
         "contact_time": (
             (),
             time_below(history.time[last], axis_gap[last], contact.surface.gap_of_largest_tension),
         ),
         "indentation": ((), max(0.0, -history.axis_deformation[last].min())),
-        "viscous_loss": ((), history.integrate(history.viscous_power, np.ones_like, tops[-2])),
+        "viscous_loss": ((), history.integrate(history.viscous_power, np.ones_like, start)),
     }
     return dataset("tapping-cycle", contact, motion, solver, tolerance, history, observables)
 

@@ -14,7 +14,7 @@ from softafm.halfspace.mesh import node_index, unit_mesh
 from softafm.solvers.history import History, Profiles
 
 _COARSEST_SPACING = 0.3
-_EXTENT = 6.0
+_EXTENT = 8.0
 _FIRST_LEVEL = 3
 _CHUNK = 256
 
@@ -72,6 +72,7 @@ class Energy:
         for stop in stops[1:]:
             if run.time in motion.breaks:
                 run.start_piece(stop)
+            run.most_per_step((stop - run.time) / 12)
             while not run.advance(stop):
                 if progress is not None:
                     progress((run.time - stops[0]) / span, f"{run.time - stops[0]:.3g} s")
@@ -102,9 +103,9 @@ class _Run:
             np.array(compliance.retardation_times, float),
         )
         gap = surface.gap_of_largest_tension
-        self.smallest_frame = 1.5 * sqrt(contact.tip.radius * surface.equilibrium_gap)
+        width = sqrt(contact.tip.radius * surface.equilibrium_gap)
         fastest = min([gap / motion.top_speed, *compliance.retardation_times])
-        strictness = tolerance / 1e-2
+        self.strictness = strictness = tolerance / 1e-2
         self.target = 0.2 * strictness**0.2
         self.growth = 0.25 * min(1.0, strictness**0.1)
         self.finest_level = max(0, ceil(2 * log2(_COARSEST_SPACING / solver.finest_spacing)))
@@ -113,8 +114,9 @@ class _Run:
         self.controls = kernel.Controls(
             end=0.0,
             shortest_step=1e-4 * strictness * fastest,
+            longest_step=0.0,
             top_speed=motion.top_speed,
-            smallest_frame=self.smallest_frame,
+            open_frame=1.5 * width,
             gap_of_tension=gap,
             prediction=0.03 * strictness**0.7,
             memory=0.01 * strictness,
@@ -132,7 +134,8 @@ class _Run:
         self.keep_shapes = keep_shapes
         self.chunks: list[np.ndarray] = []
         self.shapes: list[tuple] = []
-        self.meshes, self.most_nodes, self.coarsest = 1, n, (0.0, 0.0)
+        self.meshes, self.most_nodes, self.finest_spacing = 1, n, self.mesh.edge_spacing
+        self.coarsest = 0.0, 0.0
 
     @property
     def time(self) -> float:
@@ -146,7 +149,7 @@ class _Run:
         """Put the surface in equilibrium with the tip at its first height, without memory."""
         k, mesh, clock = self.kernel, self.mesh, self.clock
         height, profile, law, potential = self.functions
-        n, frame = mesh.nodes.size, self.smallest_frame
+        n, frame = mesh.nodes.size, self.controls.open_frame
         start = float(self.motion.breaks[0])
         tip, scratch = np.empty(n), np.empty(n)
         profile(frame * mesh.nodes, self.parameters.tip, tip, n)
@@ -175,6 +178,11 @@ class _Run:
         row[k.R_TIME], row[k.R_HEIGHT], row[k.R_FORCE] = start, h0, force
         row[k.R_EDGE], row[k.R_AXIS], row[k.R_FRAME] = clock[k.EDGE], u[0], frame
         self._keep(first, u[None].repeat(2, axis=0), 2)
+
+    def most_per_step(self, seconds):
+        """Let no step be longer, however little happens: smooth curves need points."""
+        longest = seconds * self.strictness**0.25
+        self.controls = self.controls._replace(longest_step=longest)
 
     def start_piece(self, stop):
         """Forget the past shapes: beyond a break of the motion they do not extrapolate."""
@@ -237,6 +245,7 @@ class _Run:
         self.fields = fields
         self.meshes += 1
         self.most_nodes = max(self.most_nodes, new.nodes.size)
+        self.finest_spacing = min(self.finest_spacing, new.edge_spacing)
 
     def history(self, seconds) -> History:
         """Collect what was recorded."""
@@ -247,6 +256,7 @@ class _Run:
         cuts = sorted([(i, i + 1) for i in breaks] + [(i, i) for i in np.flatnonzero(jumped)])
         starts = [0] + [start for start, _ in cuts]
         ends = [end for _, end in cuts] + [time.size]
+        events = one_fall_each(np.flatnonzero(jumped))
         return History(
             time=time,
             tip_height=records[:, k.R_HEIGHT],
@@ -255,8 +265,8 @@ class _Run:
             axis_deformation=records[:, k.R_AXIS],
             viscous_power=records[:, k.R_LOSS],
             pieces=tuple(slice(int(a), int(b)) for a, b in zip(starts, ends, strict=True)),
-            jump_time=time[jumped],
-            jump_energy=records[jumped, k.R_JUMP],
+            jump_time=time[[event[0] for event in events]],
+            jump_energy=np.array([records[event, k.R_JUMP].sum() for event in events]),
             profiles=self._profiles() if self.keep_shapes else None,
             diagnostics={
                 "steps": time.size - 1,
@@ -264,6 +274,7 @@ class _Run:
                 "newton_iterations": int(self.clock[k.NEWTONS]),
                 "meshes": self.meshes,
                 "most_nodes": self.most_nodes,
+                "finest_spacing": self.finest_spacing,
                 "wall_time": seconds,
             },
             warnings=self._warnings(),
@@ -301,6 +312,11 @@ class _Run:
                 index <= last, spline(np.minimum(index, last)), shape[-1] * end / np.fmax(radius, end)
             )
         return Profiles(radius, deformation)
+
+
+def one_fall_each(steps) -> list[np.ndarray]:
+    """Group the indices of jump steps: those a few steps apart are one fall, seen on finer meshes."""
+    return np.split(steps, np.flatnonzero(np.diff(steps) > 3) + 1) if steps.size else []
 
 
 def mirrored(values):

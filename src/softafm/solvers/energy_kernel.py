@@ -82,8 +82,9 @@ class Controls(NamedTuple):
 
     end: float
     shortest_step: float
+    longest_step: float
     top_speed: float
-    smallest_frame: float
+    open_frame: float
     gap_of_tension: float
     prediction: float
     memory: float
@@ -341,12 +342,15 @@ def extrapolation_weights(history, step, last, before, weights):
 
 @njit(float64(float64, _V, MESH, CONTROLS), cache=True)
 def following_frame(step, clock, mesh, controls):
-    """Frame radius for the next step: the edge carried on at its speed, held within the slack."""
+    """Frame radius for the next step: the edge carried on at its speed, within the slack.
+
+    A contact too small to fill the field of attraction is seen from a wider frame.
+    """
     edge = clock[EDGE]
     if clock[HISTORY] > 1:
         ahead = (clock[EDGE] - clock[EDGE_EARLIER]) * step / clock[LAST]
         edge += min(max(ahead, -0.2 * edge), 0.2 * edge)
-    frame = max(controls.smallest_frame, edge)
+    frame = max(edge, controls.open_frame - 1.5 * edge)
     if abs(frame - clock[FRAME]) < controls.slack * mesh.edge_spacing * clock[FRAME]:
         return clock[FRAME]
     return frame
@@ -424,7 +428,7 @@ def advance(
             outcome = STUCK
             break
         clock[TRIES] += 1
-        step = clock[STEP]
+        step = min(clock[STEP], controls.longest_step)
         if clock[AXIS_GAP] > 3.0 * controls.gap_of_tension:
             # Do not leap over a contact that has not been felt yet.
             step = min(step, 0.3 * clock[AXIS_GAP] / controls.top_speed)
@@ -545,7 +549,7 @@ def advance(
         edge = frame * radius_of_gap(gap, mesh.nodes, controls.gap_of_tension)
         _move_clock(clock, step, frame, edge, force)
         clock[TIME] = controls.end if step == left else clock[TIME] + step
-        clock[STEP] = step * min(2.5, max(0.3, growth))
+        clock[STEP] = max(step * min(2.5, max(0.3, growth)), 0.999 * controls.shortest_step)
         clock[HISTORY] = min(history + 1, 3)
         clock[AXIS_GAP] = gap[0]
 

@@ -62,3 +62,27 @@ class History:
             at = middle[:, None] + half[:, None] * points
             total += float(np.sum(spline(at) * weight(at) * gauss * half[:, None]))
         return total
+
+    def extreme(self, values, sign: int, start=-np.inf, stop=np.inf) -> float:
+        """Largest (``sign`` 1) or smallest (-1) of ``values`` (n,) between two times (s).
+
+        Refined by the parabola through the extreme step and its neighbours in the same piece.
+        """
+        best = -np.inf
+        for piece in self.pieces:
+            time, height = self.time[piece], sign * values[piece]
+            inside = np.flatnonzero((time >= start) & (time <= stop))
+            if inside.size == 0:
+                continue
+            top = inside[np.argmax(height[inside])]
+            value = height[top]
+            if inside[0] < top < inside[-1]:
+                (x0, x1), (y0, y1) = (time[top - 1 : top + 2 : 2] - time[top]), (
+                    height[top - 1 : top + 2 : 2] - value
+                )
+                curvature = (y1 / x1 - y0 / x0) / (x1 - x0)
+                slope = y0 / x0 - curvature * x0
+                if curvature < 0:
+                    value -= slope**2 / (4 * curvature)
+            best = max(best, value)
+        return sign * float(best)

@@ -1,0 +1,282 @@
+"""The command line: ``softafm run``, ``example``, ``plot``, ``info`` and ``export``.
+
+Everything heavy is imported inside the commands, so that ``softafm --help`` answers at once.
+"""
+
+import io
+import os
+import sys
+import tempfile
+import warnings
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+if TYPE_CHECKING:
+    from xarray import Dataset
+
+SUCCESS, FAILURE, BAD_INPUT = 0, 1, 2
+_PICTURES = (".png", ".pdf", ".svg")
+
+app = typer.Typer(
+    name="softafm",
+    help="Simulate atomic force microscopy on soft, adhesive, viscoelastic surfaces.",
+    no_args_is_help=False,
+    add_completion=False,
+    pretty_exceptions_enable=False,
+)
+
+Config = Annotated[Path, typer.Argument(help="Experiment file in TOML.", metavar="CONFIG.toml")]
+Result = Annotated[Path, typer.Argument(help="What a run wrote.", metavar="RESULT.nc")]
+Force = Annotated[bool, typer.Option("--force", help="Overwrite an existing output.")]
+Overrides = Annotated[
+    list[str] | None,
+    typer.Option("--set", help="Replace a value, e.g. sample.E0=3GPa.", metavar="KEY=VALUE"),
+]
+
+
+class _BadInput(Exception):
+    """The user's input cannot be used; the message is for them."""
+
+
+class _Failure(Exception):
+    """Good input, but the work could not be finished; the message is for the user."""
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Run the command line and return its exit code: 0 success, 2 bad input, 1 failure."""
+    try:
+        code = app(args=arguments, prog_name="softafm", standalone_mode=False)
+        return _interrupted() if code == 130 else int(code or SUCCESS)
+    except typer.TyperException as error:  # how typer reports a wrong option or argument
+        return _complain(f"{error.format_message()} (see softafm --help)", BAD_INPUT)
+    except _BadInput as error:
+        return _complain(str(error), BAD_INPUT)
+    except _Failure as error:
+        return _complain(str(error), FAILURE)
+    except (KeyboardInterrupt, typer.Abort):
+        return _interrupted()
+    except BrokenPipeError:  # the reader of our output, such as head, has seen enough
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        return FAILURE
+    except Exception as error:
+        if os.environ.get("SOFTAFM_TRACEBACK"):
+            raise
+        reason = " ".join(f"{type(error).__name__}: {error}".split())
+        return _complain(f"{reason} (SOFTAFM_TRACEBACK=1 shows where)", FAILURE)
+
+
+@app.callback(invoke_without_command=True)
+def _softafm(
+    context: typer.Context,
+    version: Annotated[bool, typer.Option("--version", help="Show the version.")] = False,
+) -> None:
+    if version:
+        from softafm import __version__
+
+        typer.echo(f"softafm {__version__}")
+    elif context.invoked_subcommand is None:
+        typer.echo(context.get_help())
+
+
+@app.command()
+def run(
+    config: Config,
+    out: Annotated[Path | None, typer.Option(help="Result; default CONFIG.nc here.")] = None,
+    overrides: Overrides = None,
+    solver: Annotated[str | None, typer.Option(help="Name of the solver.")] = None,
+    tolerance: Annotated[float | None, typer.Option(help="Target relative error.")] = None,
+    profiles: Annotated[bool, typer.Option("--profiles", help="Keep surface shapes.")] = False,
+    force: Force = False,
+) -> None:
+    """Run an experiment file, save the result and show its observables."""
+    changes = list(overrides or [])
+    changes += [f"solver.name={solver}"] if solver is not None else []
+    changes += [f"run.tolerance={tolerance!r}"] if tolerance is not None else []
+    changes += ["run.profiles=true"] if profiles else []
+    with _bad_input():
+        from softafm import results
+        from softafm.config import ConfigError, load_experiment
+        from softafm.summary import observables
+
+        experiment = load_experiment(config, changes)
+        out = _output(out, f"{config.stem}.nc", (".nc",), force)
+    with _visible_warnings():
+        try:
+            dataset = experiment.run(progress=sys.stderr.isatty())
+        except ConfigError as error:
+            raise _BadInput(str(error)) from error
+        except RuntimeError as error:
+            raise _Failure(f"the run failed: {error}") from error
+    _save(results.save, dataset, out, force)
+    _show(observables(dataset))
+    typer.echo(f"saved {out}")
+
+
+@app.command()
+def example(
+    name: Annotated[str | None, typer.Argument(help="Which one; none lists them.")] = None,
+    out: Annotated[Path | None, typer.Option(help="File; default NAME.toml here.")] = None,
+    force: Force = False,
+) -> None:
+    """List the bundled experiment files, or write one to start from."""
+    from softafm.config import example_names, example_text
+
+    if name is None:
+        for known in example_names():
+            title = example_text(known).splitlines()[0].lstrip("# ")
+            typer.echo(f"{known:20} {title}")
+        typer.echo("write one with: softafm example NAME")
+        return
+    with _bad_input():
+        text = example_text(name)
+        out = _output(out, f"{name}.toml", (".toml",), force)
+    _write(out, text.encode())
+    typer.echo(f"wrote {out}; run it with: softafm run {out}")
+
+
+@app.command()
+def plot(
+    results: Annotated[
+        list[Path], typer.Argument(help="What runs wrote; several share axes.", metavar="RESULT.nc")
+    ],
+    out: Annotated[Path | None, typer.Option(help="Figure; default RESULT.png here.")] = None,
+    force: Force = False,
+) -> None:
+    """Draw one result, or several of the same mode in one figure."""
+    with _bad_input():
+        out = _output(out, f"{results[0].stem}.png", _PICTURES, force)
+
+        from softafm.plotting import plot as draw
+        from softafm.results import load
+
+        datasets = [load(path) for path in results]
+        figure = draw(datasets, labels=[path.stem for path in results])
+    picture = io.BytesIO()
+    figure.savefig(picture, format=out.suffix[1:].lower(), dpi=150)
+    _write(out, picture.getvalue())
+    typer.echo(f"saved {out}")
+
+
+@app.command()
+def info(config: Config, overrides: Overrides = None) -> None:
+    """Show the regime, the scales and the expected cost of an experiment, without running it."""
+    with _bad_input():
+        from softafm.config import load_experiment
+        from softafm.summary import regime
+
+        experiment = load_experiment(config, overrides or [])
+    _show(regime(experiment))
+
+
+@app.command()
+def export(
+    result: Result,
+    out: Annotated[Path, typer.Option(help="Curve (.csv) or all (.h5).", metavar="CURVE.csv")],
+    force: Force = False,
+) -> None:
+    """Write the curve of a result as text for other programs."""
+    with _bad_input():
+        out = _output(out, "", (".csv", ".h5"), force)
+
+        from softafm import results
+
+        dataset = results.load(result)
+    _save(results.export, dataset, out, force)
+    typer.echo(f"saved {out}")
+
+
+def _complain(text: str, code: int) -> int:
+    for line in text.splitlines():
+        print(f"softafm: {line}", file=sys.stderr)
+    return code
+
+
+def _interrupted() -> int:
+    return _complain("interrupted, nothing written", FAILURE)
+
+
+@contextmanager
+def _bad_input() -> Iterator[None]:
+    """Report what is refused inside as bad input; a run does not belong inside."""
+    try:
+        yield
+    except (ValueError, OSError) as error:
+        raise _BadInput(str(error)) from error
+
+
+def _output(out: Path | None, default: str, suffixes: tuple[str, ...], force: bool) -> Path:
+    """Return where to write, having made sure that it can be written; OSError or ValueError."""
+    path = Path(default) if out is None else out
+    if path.suffix.lower() not in suffixes:
+        raise ValueError(f"--out = {path}: must end in {' or '.join(suffixes)}")
+    if path.exists() and not path.is_file():
+        raise ValueError(f"--out = {path}: exists and is not a file")
+    if path.exists() and not force:
+        raise ValueError(f"--out = {path}: exists; choose another name or add --force")
+    if path.exists() and not os.access(path, os.W_OK):
+        raise ValueError(f"--out = {path}: is write-protected")
+    try:
+        with tempfile.TemporaryFile(dir=path.parent):
+            pass
+    except OSError as error:
+        raise ValueError(f"--out = {path}: cannot write there: {error.strerror}") from None
+    return path
+
+
+def _write(path: Path, content: bytes) -> None:
+    """Write a file whole or not at all."""
+    handle, name = tempfile.mkstemp(dir=path.parent, prefix=f".{path.name}.")
+    try:
+        with os.fdopen(handle, "wb") as file:
+            file.write(content)
+        mask = os.umask(0)
+        os.umask(mask)
+        os.chmod(name, 0o666 & ~mask)
+        os.replace(name, path)
+    except BaseException:
+        Path(name).unlink(missing_ok=True)
+        raise
+
+
+def _save(write: Callable, dataset: "Dataset", out: Path, force: bool) -> None:
+    """Write by ``results.save`` or ``results.export``."""
+    try:
+        write(dataset, out, overwrite=force)
+    except FileExistsError:
+        raise _BadInput(f"--out = {out}: appeared meanwhile; add --force to overwrite") from None
+    except OSError as error:
+        raise _Failure(f"{out} could not be written: {error.strerror or error}") from error
+
+
+def _show(renderable) -> None:
+    from rich.console import Console
+
+    Console().print(renderable)
+
+
+@contextmanager
+def _visible_warnings() -> Iterator[None]:
+    """Print warnings about the result as one line each; leave all others as they are."""
+    from softafm import AccuracyWarning
+
+    with warnings.catch_warnings():
+        warnings.simplefilter("always", AccuracyWarning)
+        usual = warnings.showwarning
+
+        def show(message, category, *place, **options):
+            if issubclass(category, AccuracyWarning):
+                text = " ".join(str(message).split())
+                print(f"softafm: warning: {text}", file=sys.stderr)
+            else:
+                usual(message, category, *place, **options)
+
+        warnings.showwarning = show
+        yield
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,128 @@
+"""Tables for people: what a run found, and what an experiment is before it runs."""
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+from rich.table import Table
+
+from softafm.units import readable
+
+if TYPE_CHECKING:
+    from xarray import Dataset
+
+    from softafm.config import Experiment
+
+
+def observables(dataset: "Dataset") -> Table:
+    """Return a table of every scalar of a result, and of the number of elastic jumps."""
+    table = _table(str(dataset.attrs.get("mode", "result")))
+    for name, variable in dataset.data_vars.items():
+        if variable.ndim == 0 and np.issubdtype(variable.dtype, np.number):
+            value = readable(float(variable), variable.attrs.get("units", ""))
+            table.add_row(str(name), value, str(variable.attrs.get("long_name", "")))
+    if "jump_time" in dataset:
+        table.add_row("jumps", str(dataset["jump_time"].size), "elastic instabilities crossed")
+    return table
+
+
+def regime(experiment: "Experiment") -> Table:
+    """Return a table of the numbers that say how a contact will behave and what it will cost."""
+    contact, motion = experiment.contact, experiment.motion
+    breaks = motion.breaks
+    duration = float(breaks[-1] - breaks[0])
+    instants = np.concatenate([breaks, motion.landmarks, np.linspace(breaks[0], breaks[-1], 2001)])
+    lowest = float(np.min(motion.height(instants)))
+    radius = contact.contact_radius(lowest)
+    table = _table(f"{experiment.mode}, before any run")
+
+    for when, tabor in (
+        ("fast", contact.tabor_instantaneous),
+        ("slow", contact.tabor_relaxed),
+    ):
+        table.add_row(f"Tabor number, {when}", f"{tabor:.3g}", _tabor_in_words(tabor))
+    for when, length in (
+        ("fast", contact.cohesive_length_instantaneous),
+        ("slow", contact.cohesive_length),
+    ):
+        table.add_row(f"cohesive length, {when}", readable(length, "m"), "tension zone at the edge")
+    work = readable(contact.surface.work_of_adhesion, "J/m²")
+    table.add_row("work of adhesion", work, "per area, to part the surfaces")
+    table.add_row("lowest tip height", readable(lowest, "m"), "above the undeformed surface")
+    jkr = "JKR, slow, at the lowest height" if radius else "none is expected to last"
+    table.add_row("contact radius", readable(radius, "m"), jkr)
+    table.add_row("time of the motion", readable(duration, "s"), "")
+    for creep_time in map(float, contact.sample.reduced_compliance.retardation_times):
+        words = _creep_in_words(creep_time / duration)
+        table.add_row("creep time", readable(creep_time, "s"), words)
+    cycles = getattr(motion, "cycles", 1)
+    swept = 2 * radius / contact.cohesive_length * cycles
+    reason = f"the edge crosses at most {swept:.2g} cohesive lengths"
+    table.add_row("expected cost", _cost_in_words(swept, cycles), reason)
+    return table
+
+
+def regime(experiment: "Experiment") -> Table:
+    """Return a table of the numbers that say how a contact will behave and what it will cost."""
+    contact, motion = experiment.contact, experiment.motion
+    breaks = motion.breaks
+    duration = float(breaks[-1] - breaks[0])
+    instants = np.concatenate([breaks, motion.landmarks, np.linspace(breaks[0], breaks[-1], 2001)])
+    lowest = float(np.min(motion.height(instants)))
+    radius = contact.contact_radius(lowest)
+    table = _table(f"{experiment.mode}, before any run")
+
+    for when, tabor in (
+        ("fast", contact.tabor_instantaneous),
+        ("slow", contact.tabor_relaxed),
+    ):
+        table.add_row(f"Tabor number, {when}", f"{tabor:.3g}", _tabor_in_words(tabor))
+    for when, length in (
+        ("fast", contact.cohesive_length_instantaneous),
+        ("slow", contact.cohesive_length),
+    ):
+        table.add_row(f"cohesive length, {when}", readable(length, "m"), "tension zone at the edge")
+    work = readable(contact.surface.work_of_adhesion, "J/m²")
+    table.add_row("work of adhesion", work, "per area, to part the surfaces")
+    table.add_row("lowest tip height", readable(lowest, "m"), "above the undeformed surface")
+    jkr = "JKR, slow, at the lowest height" if radius else "none is expected to last"
+    table.add_row("contact radius", readable(radius, "m"), jkr)
+    table.add_row("time of the motion", readable(duration, "s"), "")
+    for creep_time in map(float, contact.sample.reduced_compliance.retardation_times):
+        words = _creep_in_words(creep_time / duration)
+        table.add_row("creep time", readable(creep_time, "s"), words)
+    swept = 2 * radius / contact.cohesive_length * getattr(motion, "cycles", 1)
+    reason = f"the edge crosses {swept:.2g} cohesive lengths"
+    table.add_row("expected cost", _cost_in_words(swept), reason)
+    return table
+
+
+def _table(title: str) -> Table:
+    table = Table(title=title, title_justify="left", show_header=False, box=None)
+    table.add_column(no_wrap=True)
+    table.add_column(justify="right", no_wrap=True)
+    table.add_column(style="dim")
+    return table
+
+
+def _tabor_in_words(tabor: float) -> str:
+    if tabor < 0.1:
+        return "stiff (DMT): adhesion acts around a Hertz contact"
+    if tabor <= 5:
+        return "between stiff (DMT) and soft (JKR)"
+    return "soft (JKR): adhesion acts at the edge"
+
+
+def _creep_in_words(share: float) -> str:
+    if share < 1e-3:
+        return f"{share:.2g} of the motion: nearly relaxed"
+    if share > 1e2:
+        return f"{share:.2g} motions: nearly elastic, at the short-time modulus"
+    return f"{share:.2g} of the motion: viscoelastic"
+
+
+def _cost_in_words(cohesive_lengths: float, cycles: int) -> str:
+    """Order of magnitude of a run on one core at the default tolerance, as measured."""
+    seconds = 1e-2 * cycles + 1e-4 * cohesive_lengths
+    if seconds < 1:
+        return "under 1 s"
+    return "seconds" if seconds < 60 else "minutes"

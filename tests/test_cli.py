@@ -1,0 +1,334 @@
+"""The command line: what it writes, what it says, and how it fails."""
+
+import os
+import re
+import signal
+import subprocess
+import sys
+import warnings
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+import softafm as sa
+from softafm.cli import main
+from softafm.config import example_text
+
+posix = pytest.mark.skipif(os.name != "posix", reason="signals and terminals of POSIX")
+
+
+@pytest.fixture
+def folder(tmp_path, monkeypatch):
+    """An empty current directory with the two examples in it."""
+    monkeypatch.chdir(tmp_path)
+    for name in ("ldpe-tapping", "attard-triangle"):
+        (tmp_path / f"{name}.toml").write_text(example_text(name), encoding="utf-8")
+    return tmp_path
+
+
+@pytest.fixture
+def softafm(capsys):
+    """Run a command line; return its exit code, stdout and stderr."""
+
+    def softafm(*arguments):
+        capsys.readouterr()
+        code = main([str(argument) for argument in arguments])
+        said = capsys.readouterr()
+        return code, said.out, said.err
+
+    return softafm
+
+
+def names(folder):
+    return sorted(path.name for path in folder.iterdir())
+
+
+def refused(answer):
+    """Assert that the input was refused in one line without a traceback; return the line."""
+    code, out, err = answer
+    assert code == 2
+    assert out == ""
+    assert err.count("\n") == 1
+    assert err.startswith("softafm: ")
+    return err.removeprefix("softafm: ").strip()
+
+
+# What works
+
+
+def test_run_saves_the_result_and_shows_the_observables(folder, softafm):
+    code, out, err = softafm("run", "ldpe-tapping.toml")
+    assert (code, err) == (0, "")
+    result = sa.load(folder / "ldpe-tapping.nc")
+    assert float(result["virial"]) == pytest.approx(-3.4805e-17, rel=0.01)
+    assert re.search(r"virial +-34\.\d+ aJ", out)
+    assert re.search(r"force_max +11\.\d+ nN", out)
+    assert re.search(rf"jumps +{result['jump_time'].size}\b", out)
+    assert "saved ldpe-tapping.nc" in out
+
+
+def test_run_takes_overrides_and_options(folder, softafm):
+    code, _, _ = softafm(
+        *("run", "attard-triangle.toml", "--set", "motion.speed=2um/s", "--set", "sample.E0=4GPa"),
+        *("--tolerance", "0.05", "--profiles", "--solver", "energy", "--out", "slow.nc"),
+    )
+    assert code == 0
+    result = sa.load(folder / "slow.nc")
+    assert float(result["time"][-1]) == pytest.approx(40e-9 / 2e-6)
+    assert result.attrs["tolerance"] == 0.05
+    assert '"E0": 4000000000.0' in result.attrs["experiment"]
+    assert "gap" in result
+
+
+def test_plot_draws_one_or_several(folder, softafm):
+    softafm("run", "attard-triangle.toml", "--tolerance", "0.05")
+    assert softafm("plot", "attard-triangle.nc")[0] == 0
+    assert (folder / "attard-triangle.png").read_bytes().startswith(b"\x89PNG")
+    two = ("plot", "attard-triangle.nc", "attard-triangle.nc", "--out", "two.pdf")
+    assert softafm(*two)[0] == 0
+    assert (folder / "two.pdf").read_bytes().startswith(b"%PDF")
+
+
+def test_export_writes_a_curve_other_programs_read(folder, softafm):
+    softafm("run", "attard-triangle.toml", "--tolerance", "0.05")
+    assert softafm("export", "attard-triangle.nc", "--out", "curve.csv")[0] == 0
+    lines = (folder / "curve.csv").read_text(encoding="utf-8").splitlines()
+    header = next(line for line in lines if not line.startswith("#"))
+    assert "force (N)" in header.split(",")
+
+
+def test_info_shows_the_regime_without_running(folder, softafm):
+    before = names(folder)
+    code, out, err = softafm("info", "ldpe-tapping.toml")
+    assert (code, err) == (0, "")
+    assert re.search(r"Tabor number, slow +3\.35", out)
+    assert re.search(r"work of adhesion +31\.83 mJ/m²", out)
+    assert re.search(r"creep time +100 ns", out)
+    assert "JKR" in out
+    assert "expected cost" in out
+    assert names(folder) == before
+
+
+@pytest.mark.parametrize(
+    ("modulus", "regime"), [("100 GPa", "stiff (DMT)"), ("0.1 MPa", "soft (JKR)")]
+)
+def test_info_names_the_regime(softafm, folder, modulus, regime):
+    sample = f"sample={{model='elastic', E='{modulus}', poisson=0.3}}"
+    code, out, _ = softafm("info", "ldpe-tapping.toml", "--set", sample)
+    assert code == 0
+    assert regime in out
+
+
+def test_example_lists_and_writes(tmp_path, monkeypatch, softafm):
+    monkeypatch.chdir(tmp_path)
+    code, out, _ = softafm("example")
+    assert code == 0
+    for name in ("attard-triangle", "ldpe-tapping"):
+        assert re.search(rf"^{name} +\w.*", out, re.MULTILINE)
+    assert names(tmp_path) == []
+    assert softafm("example", "ldpe-tapping")[0] == 0
+    assert softafm("example", "ldpe-tapping", "--out", "mine.toml")[0] == 0
+    assert names(tmp_path) == ["ldpe-tapping.toml", "mine.toml"]
+    assert (tmp_path / "mine.toml").read_text(encoding="utf-8") == example_text("ldpe-tapping")
+
+
+def test_version_and_help(softafm):
+    assert softafm("--version")[:2] == (0, f"softafm {sa.__version__}\n")
+    assert softafm("run", "--help")[0] == 0
+    code, out, _ = softafm("--help")
+    assert code == 0
+    assert all(command in out for command in ("run", "example", "plot", "info", "export"))
+    assert softafm()[:2] == (0, out)
+
+
+# Existing and unwritable outputs
+
+
+@pytest.mark.parametrize(
+    ("command", "out"),
+    [
+        (("run", "ldpe-tapping.toml"), "ldpe-tapping.nc"),
+        (("run", "ldpe-tapping.toml"), "other.nc"),
+        (("plot", "result.nc"), "result.png"),
+        (("export", "result.nc"), "curve.csv"),
+        (("example", "ldpe-tapping"), "ldpe-tapping.toml"),
+    ],
+)
+def test_an_existing_output_needs_force(folder, softafm, command, out):
+    softafm("run", "ldpe-tapping.toml", "--tolerance", "0.05", "--out", "result.nc")
+    command = (*command, "--out", out)
+    (folder / out).write_bytes(b"precious")
+    before = names(folder)
+    assert refused(softafm(*command)).startswith(f"--out = {out}: exists")
+    assert (folder / out).read_bytes() == b"precious"
+    assert softafm(*command, "--force")[0] == 0
+    assert (folder / out).read_bytes() != b"precious"
+    assert names(folder) == before
+
+
+@pytest.mark.parametrize("out", ["nowhere/result.nc", "ldpe-tapping.toml/result.nc"])
+def test_an_unwritable_output_is_refused_before_the_run(folder, softafm, monkeypatch, out):
+    monkeypatch.setattr(sa, "tapping_cycle", lambda *_, **__: pytest.fail("it ran"))
+    assert "cannot write there" in refused(softafm("run", "ldpe-tapping.toml", "--out", out))
+
+
+@pytest.mark.skipif(not hasattr(os, "geteuid") or os.geteuid() == 0, reason="root writes anywhere")
+def test_a_write_protected_folder_and_file_are_refused(folder, softafm):
+    (folder / "old.nc").write_bytes(b"precious")
+    (folder / "old.nc").chmod(0o400)
+    line = refused(softafm("run", "ldpe-tapping.toml", "--out", "old.nc", "--force"))
+    assert "write-protected" in line
+    (folder / "locked").mkdir(mode=0o500)
+    line = refused(softafm("run", "ldpe-tapping.toml", "--out", "locked/new.nc"))
+    assert "cannot write there" in line
+
+
+def test_a_folder_or_a_wrong_suffix_is_no_output(folder, softafm):
+    (folder / "folder.nc").mkdir()
+    run = ("run", "ldpe-tapping.toml", "--force", "--out")
+    assert "is not a file" in refused(softafm(*run, "folder.nc"))
+    assert "must end in .nc" in refused(softafm(*run, "ldpe-tapping.toml"))
+    assert "must end in .nc" in refused(softafm(*run, "curve.csv"))
+
+
+# Bad input
+
+
+@pytest.mark.parametrize(
+    ("arguments", "reason"),
+    [
+        (("run", "none.toml"), "none.toml: no such file"),
+        (("run", "."), ".: is a directory"),
+        (("info", "none.toml"), "none.toml: no such file"),
+        (("run", "ldpe-tapping.toml", "--set", "tip.radius=10 kg"), "tip.radius = '10 kg': must"),
+        (("run", "ldpe-tapping.toml", "--set", "tip.radius"), "override 'tip.radius': must be"),
+        (("run", "ldpe-tapping.toml", "--solver", "attard"), "solver.name = 'attard': must be"),
+        (("run", "ldpe-tapping.toml", "--tolerance", "0"), "run.tolerance = 0.0: must be"),
+        (("run", "ldpe-tapping.toml", "--tolerance", "nan"), "run.tolerance = nan: must be"),
+        (("run", "ldpe-tapping.toml", "--set", "motion.mean_height=0 nm", "--set",
+          "motion.amplitude=0.1 nm"), "motion.mean_height = '0 nm': start height"),
+        (("example", "ldpe"), "example 'ldpe': unknown;"),
+        (("plot", "none.nc"), "none.nc: no such file"),
+        (("plot", "ldpe-tapping.toml"), "ldpe-tapping.toml: not a readable NetCDF file"),
+        (("plot", "none.nc", "--out", "picture.bmp"), "--out = picture.bmp: must end in .png"),
+        (("export", "none.nc", "--out", "a.csv"), "none.nc: no such file"),
+    ],
+)  # fmt: skip
+def test_bad_input_is_refused_in_one_line(folder, softafm, arguments, reason):
+    before = names(folder)
+    assert refused(softafm(*arguments)).startswith(reason)
+    assert names(folder) == before
+
+
+@pytest.mark.parametrize(
+    "arguments",
+    [("run",), ("rnu",), ("run", "a.toml", "--frce"), ("run", "a.toml", "--tolerance", "x")],
+)
+def test_wrong_usage_is_bad_input(softafm, arguments):
+    assert "see softafm --help" in refused(softafm(*arguments))
+
+
+def test_different_modes_do_not_share_a_plot(folder, softafm):
+    for name in ("ldpe-tapping", "attard-triangle"):
+        softafm("run", f"{name}.toml", "--tolerance", "0.05")
+    answer = softafm("plot", "ldpe-tapping.nc", "attard-triangle.nc", "--out", "both.png")
+    assert "mode" in refused(answer)
+    assert not (folder / "both.png").exists()
+
+
+@given(st.lists(st.text(max_size=12), max_size=4))
+@settings(max_examples=80, deadline=None)
+def test_no_argument_makes_it_crash(arguments):
+    assert main(["info", *arguments]) in (0, 2)
+
+
+# Failures
+
+
+def test_a_run_that_cannot_go_on_is_a_failure(folder, softafm):
+    code, out, err = softafm("run", "ldpe-tapping.toml", "--set", "solver={name='energy', "
+                             "most_steps=10}")  # fmt: skip
+    assert (code, out) == (1, "")
+    assert err.startswith("softafm: the run failed: ")
+    assert err.count("\n") == 1
+    assert not (folder / "ldpe-tapping.nc").exists()
+
+
+def test_an_unforeseen_error_is_one_line_and_a_traceback_on_request(folder, softafm, monkeypatch):
+    def broken(*_, **__):
+        raise ArithmeticError("by zero\nin two lines")
+
+    monkeypatch.setattr(sa, "tapping_cycle", broken)
+    code, _, err = softafm("run", "ldpe-tapping.toml")
+    assert code == 1
+    assert err.startswith("softafm: ArithmeticError: by zero in two lines")
+    assert err.count("\n") == 1
+    monkeypatch.setenv("SOFTAFM_TRACEBACK", "1")
+    with pytest.raises(ArithmeticError):
+        main(["run", "ldpe-tapping.toml"])
+
+
+def test_doubtful_accuracy_is_said_in_one_line(folder, softafm, monkeypatch):
+    honest = sa.tapping_cycle
+
+    def doubtful(*arguments, **options):
+        warnings.warn("the mesh is\ntoo coarse", sa.AccuracyWarning, stacklevel=1)
+        return honest(*arguments, **options)
+
+    monkeypatch.setattr(sa, "tapping_cycle", doubtful)
+    code, _, err = softafm("run", "ldpe-tapping.toml")
+    assert (code, err) == (0, "softafm: warning: the mesh is too coarse\n")
+
+
+# As its own process
+
+CALL = [sys.executable, "-c", "import sys; from softafm.cli import main; sys.exit(main())"]
+
+
+def test_exit_codes_of_the_process(folder):
+    good = subprocess.run([*CALL, "info", "ldpe-tapping.toml"], capture_output=True, text=True)
+    assert (good.returncode, good.stderr) == (0, "")
+    bad = subprocess.run([*CALL, "info", "none.toml"], capture_output=True, text=True)
+    assert (bad.returncode, bad.stdout) == (2, "")
+    assert bad.stderr == "softafm: none.toml: no such file\n"
+
+
+def test_importing_the_package_reads_neither_schema_nor_units():
+    code = "import sys, softafm, softafm.cli; print({'pydantic', 'pint', 'matplotlib', 'rich'} & {*sys.modules})"
+    said = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert said.stdout == "set()\n"
+
+
+@posix
+def test_an_interrupted_run_says_so_and_leaves_nothing(folder):
+    before = names(folder)
+    master, terminal = os.openpty()
+    command = [*CALL, "run", "ldpe-tapping.toml", "--tolerance", "1e-4", "--set"]
+    process = subprocess.Popen(
+        [*command, "motion.cycles=100000"],
+        stdout=subprocess.PIPE,
+        stderr=terminal,
+        # A shell's background job ignores Ctrl-C, and so would its children.
+        preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL),
+    )
+    os.close(terminal)
+    said = b""
+    try:
+        while b"%" not in said:
+            said += os.read(master, 1000)
+        process.send_signal(signal.SIGINT)
+        out, _ = process.communicate(timeout=60)
+        try:
+            while chunk := os.read(master, 1000):
+                said += chunk
+        except OSError:  # Linux reports the end of a terminal as an error
+            pass
+    finally:
+        process.kill()
+        os.close(master)
+    assert process.returncode == 1
+    assert out == b""
+    assert b"softafm: interrupted, nothing written" in said
+    assert b"Traceback" not in said
+    assert names(folder) == before

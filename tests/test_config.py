@@ -1,0 +1,535 @@
+"""Experiment files: what they mean, and that nothing wrong in them passes or crashes."""
+
+import json
+import math
+import os
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+import softafm as sa
+from softafm.config import ConfigError, Experiment, example_names, example_text, load_experiment
+from softafm.units import LENGTH, MODULUS, readable, read_quantity
+
+TAP = {
+    "mode": "tapping-cycle",
+    "tip": {"shape": "paraboloid", "radius": "10 nm"},
+    "sample": {
+        "model": "standard-linear-solid",
+        "E0": "2 GPa",
+        "E_inf": "0.1 GPa",
+        "creep_time": "0.1 us",
+        "poisson": 0.49,
+    },
+    "surface": {"law": "lennard-jones", "hamaker": "1e-19 J", "z0": "0.25 nm"},
+    "motion": {"amplitude": "49.6 nm", "mean_height": "46 nm", "frequency": "278 kHz"},
+}
+TRIANGLE = {"start": "10 nm", "turn": "-10 nm", "speed": "5 um/s"}
+CURVE = {**TAP, "mode": "force-distance", "motion": TRIANGLE}
+KELVIN_VOIGT = {
+    "model": "generalized-kelvin-voigt",
+    "E0": "2 GPa",
+    "compliances": ["1 1/GPa", "2/GPa"],
+    "retardation_times": ["1 us", "10 us"],
+    "poisson": 0.3,
+}
+
+LENGTHS = {"tip.radius", "surface.z0", "motion.amplitude", "motion.mean_height"}
+POSITIVE = {
+    "tip.radius": "m",
+    "sample.E0": "Pa",
+    "sample.E_inf": "Pa",
+    "sample.creep_time": "s",
+    "surface.hamaker": "J",
+    "surface.z0": "m",
+    "motion.amplitude": "m",
+    "motion.frequency": "Hz",
+}
+QUANTITIES = {**POSITIVE, "motion.mean_height": "m"}
+UNITS = ["m", "nm", "Pa", "GPa", "s", "us", "Hz", "kHz", "J", "eV", "m/s", "J/m^2", "kg", "K", "V"]
+OF_KIND = {"m": {"m", "nm"}, "Pa": {"Pa", "GPa"}, "s": {"s", "us"}, "Hz": {"Hz", "kHz"}}
+OF_KIND["J"] = {"J", "eV"}
+
+fields = st.sampled_from(sorted(QUANTITIES))
+positive_fields = st.sampled_from(sorted(POSITIVE))
+printable = st.text(st.characters(exclude_categories=["Cs", "Cc"]), max_size=30)
+anything = st.one_of(
+    st.booleans(), st.integers(), st.floats(), printable, st.lists(st.integers())
+)
+few = settings(max_examples=60, deadline=None)
+
+
+def toml(document):
+    """Write a document of plain values and tables as TOML."""
+
+    def text(value):
+        if isinstance(value, dict):
+            return "{" + ", ".join(f"{text(k)} = {text(v)}" for k, v in value.items()) + "}"
+        if isinstance(value, list):
+            return "[" + ", ".join(map(text, value)) + "]"
+        if isinstance(value, float):
+            return repr(value) if math.isfinite(value) else str(value)
+        return json.dumps(value, ensure_ascii=False)
+
+    return "\n".join(f"{text(k)} = {text(v)}" for k, v in document.items())
+
+
+def changed(document, path, value):
+    """Return a copy with one dotted key set, or removed when the value is None."""
+    table, _, key = path.partition(".")
+    if not key:
+        copy = {**document, table: value}
+        return copy if value is not None else {k: v for k, v in document.items() if k != table}
+    return {**document, table: changed(document[table], key, value)}
+
+
+@pytest.fixture(scope="module")
+def load(tmp_path_factory):
+    """Write a document (tables, text or bytes) to a file and load it."""
+    path = tmp_path_factory.mktemp("config") / "experiment.toml"
+
+    def load(document, *overrides):
+        content = toml(document) if isinstance(document, dict) else document
+        path.write_bytes(content if isinstance(content, bytes) else content.encode())
+        return load_experiment(path, overrides)
+
+    load.folder = path.parent
+    return load
+
+
+def refusal(load, document, *overrides):
+    """Return the one line with which an experiment is refused."""
+    with pytest.raises(ConfigError) as refused:
+        load(document, *overrides)
+    lines = str(refused.value).splitlines()
+    assert len(lines) == 1
+    assert len(lines[0]) < 400
+    return lines[0]
+
+
+# What a file means
+
+
+def test_the_contracts_example_is_the_contracts_python(load):
+    experiment = load(TAP)
+    assert experiment.contact == sa.Contact(
+        tip=sa.Paraboloid(radius=10e-9),
+        sample=sa.StandardLinearSolid(E0=2e9, E_inf=0.1e9, creep_time=1e-7, poisson=0.49),
+        surface=sa.LennardJones(hamaker=1e-19, z0=0.25e-9),
+    )
+    assert experiment.motion == sa.Sine(46e-9, 49.6e-9, 278e3, cycles=1)
+    assert experiment.mode == "tapping-cycle"
+    assert (experiment.tolerance, experiment.profiles, experiment.solver) == (1e-2, False, None)
+
+
+def test_triangle_is_the_default_motion_of_a_force_curve(load):
+    named = load(changed(CURVE, "motion", {"shape": "triangle", **TRIANGLE}))
+    assert load(CURVE).motion == named.motion == sa.Triangle(10e-9, -10e-9, 5e-6)
+
+
+def test_a_force_curve_may_follow_a_sine(load):
+    motion = {"shape": "sine", **TAP["motion"], "cycles": 3}
+    assert load({**CURVE, "motion": motion}).motion == sa.Sine(46e-9, 49.6e-9, 278e3, 3)
+
+
+@pytest.mark.parametrize(
+    ("sample", "solid"),
+    [
+        ({"model": "elastic", "E": "1 MPa", "poisson": 0.3}, sa.Elastic(1e6, 0.3)),
+        (KELVIN_VOIGT, sa.GeneralizedKelvinVoigt(2e9, (1e-9, 2e-9), (1e-6, 1e-5), 0.3)),
+        (
+            {"E0": "2 GPa", "E_inf": "1 GPa", "relaxation_time": "3 us", "poisson": 0},
+            sa.StandardLinearSolid(2e9, 1e9, 6e-6, 0.0),
+        ),
+        (
+            {"G0": "2 GPa", "G_inf": "1 GPa", "creep_time": "3 us", "poisson": 0.5},
+            sa.StandardLinearSolid(6e9, 3e9, 3e-6, 0.5),
+        ),
+        (
+            {"G0": "2 GPa", "G_inf": "1 GPa", "relaxation_time": "3 us", "poisson": 0.5},
+            sa.StandardLinearSolid(6e9, 3e9, 6e-6, 0.5),
+        ),
+    ],
+)
+def test_samples(load, sample, solid):
+    table = {"model": "standard-linear-solid", **sample}
+    built = load({**TAP, "sample": table}).contact.sample
+    assert type(built) is type(solid)
+    for part, expected in zip(built.reduced_compliance, solid.reduced_compliance, strict=True):
+        np.testing.assert_allclose(part, expected, rtol=1e-14)
+
+
+def test_a_surface_may_be_given_by_its_work_of_adhesion(load):
+    table = {"law": "lennard-jones", "work_of_adhesion": "30 mJ/m^2", "z0": "2.5 angstrom"}
+    surface = load({**TAP, "surface": table}).contact.surface
+    assert surface.work_of_adhesion == pytest.approx(0.03)
+    assert surface.z0 == 2.5e-10
+
+
+def test_run_and_solver_tables(load):
+    tables = {"run": {"tolerance": 1e-3, "profiles": True}, "solver": {"name": "energy"}}
+    experiment = load({**TAP, **tables})
+    assert experiment.tolerance == 1e-3
+    assert experiment.profiles is True
+    assert experiment.solver == sa.solvers.Energy()
+
+
+def test_a_solver_takes_its_own_parameters(load):
+    solver = {"name": "energy", "most_steps": 5000}
+    assert load({**TAP, "solver": solver}).solver == sa.solvers.Energy(most_steps=5000)
+    line = refusal(load, {**TAP, "solver": {"name": "energy", "most_stepz": 5000}})
+    assert line.startswith("solver.most_stepz: unknown key; did you mean 'most_steps'")
+    assert refusal(load, {**TAP, "solver": {"name": "energy", "most_steps": "many"}}).startswith(
+        "solver.most_steps = 'many': "
+    )
+
+
+def test_overrides_replace_and_add(load):
+    experiment = load(
+        TAP, "sample.E0=3GPa", "tip.radius = '20 nm'", "sample.poisson=0.3", "motion.cycles=2"
+    )
+    assert experiment.contact.sample.E0 == 3e9
+    assert experiment.contact.tip.radius == 20e-9
+    assert experiment.contact.sample.poisson == 0.3
+    assert experiment.motion.cycles == 2
+    assert load(TAP, "run.tolerance=1e-3").tolerance == 1e-3
+
+
+def test_a_byte_order_mark_and_windows_line_ends_are_no_obstacle(load):
+    text = toml(TAP).replace("\n", "\r\n")
+    assert load(b"\xef\xbb\xbf" + text.encode()) == load(TAP)
+
+
+def test_running_a_file_is_calling_the_function(load):
+    result = load(TAP, "run.tolerance=0.05").run()
+    same = sa.tapping_cycle(
+        load(TAP).contact, amplitude=49.6e-9, mean_height=46e-9, frequency=278e3, tolerance=0.05
+    )
+    assert result.attrs["mode"] == "tapping-cycle"
+    np.testing.assert_array_equal(result["force"], same["force"])
+    curve = load(CURVE).run()
+    motion = sa.Triangle(10e-9, -10e-9, 5e-6)
+    same = sa.force_distance(load(CURVE).contact, motion)
+    np.testing.assert_array_equal(curve["force"], same["force"])
+
+
+# Bundled examples
+
+
+def test_bundled_examples_load_and_say_what_they_are(load):
+    assert {"attard-triangle", "ldpe-tapping"} <= set(example_names())
+    for name in example_names():
+        text = example_text(name)
+        assert text.startswith("# ")
+        assert isinstance(load(text), Experiment)
+
+
+def test_attards_moduli_are_halved(load):
+    sample = load(example_text("attard-triangle")).contact.sample
+    assert sample.reduced_modulus_instantaneous == pytest.approx(5e9)
+    assert sample.reduced_modulus_relaxed == pytest.approx(0.5e9)
+
+
+def test_ldpe_example_is_the_reference_case(load):
+    result = load(example_text("ldpe-tapping")).run()
+    assert float(result["virial"]) == pytest.approx(-3.4805e-17, rel=0.01)
+    assert float(result["dissipation"]) == pytest.approx(8.7097e-17, rel=0.01)
+
+
+def test_unknown_example():
+    with pytest.raises(ConfigError, match="did you mean 'ldpe-tapping'"):
+        example_text("ldpe-taping")
+
+
+# Units
+
+
+@pytest.mark.parametrize(
+    ("written", "kind", "value"),
+    [
+        ("10 nm", LENGTH, 10e-9),
+        ("10nm", LENGTH, 10e-9),
+        (" 1e1  nm ", LENGTH, 10e-9),
+        ("-10 nm", LENGTH, -10e-9),
+        (".5 µm", LENGTH, 0.5e-6),
+        ("2.5 Å", LENGTH, 2.5e-10),
+        ("0 nm", LENGTH, 0.0),
+        ("1 N/m²", MODULUS, 1.0),
+        ("1 N m^-2", MODULUS, 1.0),
+        ("3 J/m**3", MODULUS, 3.0),
+    ],
+)
+def test_quantities(written, kind, value):
+    assert read_quantity(written, kind) == value
+
+
+@given(st.floats(1e-3, 1e3), st.sampled_from(["pm", "nm", "µm", "um", "mm"]))
+@few
+def test_reading_a_length_scales_by_its_prefix(number, unit):
+    scale = {"pm": 1e-12, "nm": 1e-9, "µm": 1e-6, "um": 1e-6, "mm": 1e-3}[unit]
+    assert read_quantity(f"{number!r} {unit}", LENGTH) == pytest.approx(number * scale, rel=1e-14)
+
+
+@pytest.mark.parametrize(
+    ("value", "unit", "text"),
+    [
+        (1.14485e-8, "N", "11.45 nN"),
+        (-8.6093e-9, "N", "-8.609 nN"),
+        (9.99999e-10, "m", "1 nm"),
+        (0.0, "J", "0 J"),
+        (8.7097e-17, "J", "87.1 aJ"),
+        (2.78e5, "Hz", "278 kHz"),
+        (0.45, "", "0.45"),
+    ],
+)
+def test_readable_values(value, unit, text):
+    assert readable(value, unit) == text
+
+
+# What is refused
+
+
+@given(positive_fields, st.floats(max_value=0, allow_infinity=False))
+@few
+def test_negative_and_zero_quantities(load, path, number):
+    written = f"{number!r} {POSITIVE[path]}"
+    line = refusal(load, changed(TAP, path, written))
+    assert line.startswith(f"{path} = ")
+    assert "must be" in line
+
+
+@given(fields, st.sampled_from(["nan", "inf", "-inf", "1e999", "-1e200", "1e-300"]))
+@few
+def test_numbers_that_cannot_be_computed_with(load, path, number):
+    line = refusal(load, changed(TAP, path, f"{number} {QUANTITIES[path]}"))
+    assert line.startswith(f"{path} = '{number} ")
+
+
+@given(fields, st.floats(1e-3, 1e3), st.sampled_from(UNITS))
+@few
+def test_units_of_the_wrong_kind(load, path, number, unit):
+    if unit in OF_KIND[QUANTITIES[path]]:
+        return
+    line = refusal(load, changed(TAP, path, f"{number!r} {unit}"))
+    assert line.startswith(f"{path} = ")
+    assert "with its unit, such as '" in line
+
+
+@given(fields, st.floats(1e-3, 1e3), st.booleans())
+@few
+def test_missing_units(load, path, number, as_text):
+    line = refusal(load, changed(TAP, path, repr(number) if as_text else number))
+    assert line.startswith(f"{path} = ")
+    assert "the unit is missing" in line
+
+
+@given(fields, anything)
+@few
+def test_garbage_values(load, path, value):
+    line = refusal(load, changed(TAP, path, value))
+    assert line.startswith(path)
+
+
+@given(st.sampled_from(["tip", "sample", "surface", "motion"]), printable)
+@few
+def test_unknown_keys(load, table, key):
+    if key in TAP[table] or key in {"G0", "G_inf", "cycles", "shape"}:
+        return
+    document = changed(TAP, table, {**TAP[table], key: "1 nm"})
+    assert refusal(load, document).startswith(f"{table}.")
+
+
+@given(st.binary(max_size=200))
+@few
+def test_garbage_files(load, content):
+    with pytest.raises(ConfigError):
+        load(content)
+
+
+@given(st.text(max_size=40))
+@settings(max_examples=150, deadline=None)
+def test_garbage_overrides(load, override):
+    try:
+        load(TAP, override)
+    except ConfigError as refused:
+        assert str(refused)
+
+
+@pytest.mark.parametrize("path", [f"{t}.{k}" for t in TAP if t != "mode" for k in TAP[t]])
+def test_missing_keys(load, path):
+    line = refusal(load, changed(TAP, path, None))
+    assert line.startswith(path.split(".")[0])
+    assert path.split(".")[1] in line
+
+
+@pytest.mark.parametrize("table", ["tip", "sample", "surface", "motion"])
+def test_missing_and_malformed_tables(load, table):
+    assert refusal(load, changed(TAP, table, None)).startswith(f"{table}: missing")
+    assert refusal(load, changed(TAP, table, 3)).startswith(f"{table} = 3: must be a table")
+
+
+@pytest.mark.parametrize(
+    ("override", "line"),
+    [
+        ("tip.radius=10 kg", "tip.radius = '10 kg': must be a length with its unit, such as '10 n"),
+        ("tip.radius=9**9**9**9 m", "tip.radius = '9**9**9**9 m': must be a length"),
+        ("motion.frequency=278 krad/s", "motion.frequency = '278 krad/s': must be a frequency"),
+        ("sample.E_inf=3 GPa", "sample.E_inf = '3 GPa': must be at most sample.E0 = '2 GPa'"),
+        ("sample.poisson=0.51", "sample.poisson = 0.51: must be above -1 and at most 0.5"),
+        ("sample.poisson=-1", "sample.poisson = -1: must be above -1"),
+        ("sample.poisson=nan", "sample.poisson = nan: must be a finite number"),
+        ("sample.poisson='0.4'", "sample.poisson = '0.4': must be a plain number"),
+        ("sample.poisson=true", "sample.poisson = True: must be a plain number"),
+        ("sample.G0=1 GPa", "sample: give E0 and E_inf, or G0 and G_inf; found E0, E_inf, G0"),
+        ("sample.relaxation_time=1 us", "sample: give creep_time, or relaxation_time; found"),
+        ("surface.work_of_adhesion=30 mJ/m^2", "surface: give hamaker, or work_of_adhesion"),
+        ("tip.raduis=10 nm", "tip.raduis: unknown key; did you mean 'radius'?"),
+        ("cantilver.k=1", "cantilver: unknown key; must be 'mode'"),
+        ("tip.shape=paraboloyd", "tip.shape = 'paraboloyd': did you mean 'paraboloid'?"),
+        ("mode=tapping-cycel", "mode = 'tapping-cycel': did you mean 'tapping-cycle'?"),
+        ("mode=approach-curve", "mode = 'approach-curve': is not available in this version"),
+        ("mode=force-spectroscopy", "mode = 'force-spectroscopy': is not available in this ver"),
+        ("mode=[1]", "mode = [1]: must be 'force-distance' or 'tapping-cycle'"),
+        ("motion.cycles=0", "motion.cycles = 0: must be a whole number from 1"),
+        ("motion.cycles=1.5", "motion.cycles = 1.5: must be a whole number"),
+        ("motion.mean_height=-60 nm", "motion.mean_height = '-60 nm': start height = "),
+        ("run.tolerance=0", "run.tolerance = 0: must be between"),
+        ("run.tolerance=-1", "run.tolerance = -1: must be between"),
+        ("run.profiles=1", "run.profiles = 1: must be true or false"),
+        ("solver.name=enregy", "solver.name = 'enregy': did you mean 'energy'?"),
+        ("sample.E0", "override 'sample.E0': must be key=value"),
+        ("=3", "override '=3': must be key=value"),
+        ("tip..radius=3", "override 'tip..radius=3': must be key=value"),
+        ("tip.radius.x=3", "override 'tip.radius.x=3': tip.radius is a value, not a table"),
+    ],
+)
+def test_refusals_read_well(load, override, line):
+    assert refusal(load, TAP, override).startswith(line)
+
+
+@pytest.mark.parametrize(
+    ("motion", "line"),
+    [
+        ({"turn": "20 nm"}, "motion.turn = '20 nm': must be below motion.start = '10 nm'"),
+        ({"speed": "0 um/s"}, "motion.speed = '0 um/s': must be greater than 0"),
+        ({"speed": "5 um"}, "motion.speed = '5 um': must be a speed with its unit, such as '5 um"),
+        ({"start": "0.1 nm"}, "motion.start = '0.1 nm': start height"),
+    ],
+)
+def test_bad_triangles(load, motion, line):
+    assert refusal(load, {**CURVE, "motion": {**TRIANGLE, **motion}}).startswith(line)
+
+
+@pytest.mark.parametrize(
+    ("change", "line"),
+    [
+        ({"compliances": ["1 1/GPa", "-2/GPa"]}, "sample.compliances[1] = '-2/GPa': must be grea"),
+        ({"compliances": ["1 1/GPa", "2"]}, "sample.compliances[1] = '2': must be a compliance"),
+        ({"compliances": []}, "sample.compliances = []: must be a list"),
+        ({"compliances": "1/GPa"}, "sample.compliances = '1/GPa': must be a list"),
+        ({"retardation_times": ["1 us"]}, "sample.retardation_times = ['1 us']: has 1 entries"),
+    ],
+)
+def test_bad_kelvin_voigt_chains(load, change, line):
+    assert refusal(load, {**TAP, "sample": {**KELVIN_VOIGT, **change}}).startswith(line)
+
+
+def test_several_problems_are_told_together(load):
+    document = changed(changed(TAP, "tip.radius", "10"), "motion.frequency", "1 m")
+    with pytest.raises(ConfigError) as refused:
+        load(document)
+    first, second = str(refused.value).splitlines()
+    assert first.startswith("tip.radius")
+    assert second.startswith("motion.frequency")
+
+
+@pytest.mark.parametrize(
+    ("content", "reason"),
+    [
+        (b"", "is empty"),
+        (b" \n\t", "is empty"),
+        (b"mode = ", "is not valid TOML"),
+        (b"mode = 'a'\nmode = 'b'", "is not valid TOML"),
+        ("mode = 'café'".encode("latin-1"), "is not text in UTF-8"),
+        (b"\xff\xfem\0", "is not text in UTF-8"),
+        (b"a = " + b"[" * 100_000, "is not valid TOML"),
+        (b"a = " + b"9" * 10_000, "is not valid TOML"),
+        (b"#" * 1_000_001, "is 1.0 MB large"),
+    ],
+)
+def test_unreadable_files(load, content, reason):
+    line = refusal(load, content)
+    assert "experiment.toml: " in line
+    assert reason in line
+
+
+def test_a_huge_number_is_refused_in_a_short_line(load):
+    text = toml(TAP).replace("0.49", "0x" + "f" * 100_000)
+    assert refusal(load, text).startswith("sample.poisson = ")
+
+
+def test_missing_files_folders_and_pipes(tmp_path):
+    os.mkfifo(tmp_path / "pipe.toml")
+    for name, reason in (
+        ("none.toml", "no such file"),
+        ("", "is a directory"),
+        ("pipe.toml", "no such file"),
+        ("x" * 5000, "File name too long"),
+        ("nul\0byte", "no such file"),
+    ):
+        with pytest.raises(ConfigError, match=reason):
+            load_experiment(tmp_path / name)
+
+
+# Measured motions
+
+
+def measured(load, content, name="motion.csv"):
+    (load.folder / "motion.csv").write_bytes(content)
+    return {**CURVE, "motion": {"shape": "trajectory", "file": name}}
+
+
+def test_a_measured_motion_lies_beside_the_file(load):
+    content = b"\xef\xbb\xbfheight (nm),force (V),time (us)\r\n10,0.1,0\r\n\r\n-2,0.2,1.5\r\n10,0,3\r\n"
+    motion = load(measured(load, content)).motion
+    np.testing.assert_allclose(motion.time, [0, 1.5e-6, 3e-6], rtol=1e-14)
+    np.testing.assert_allclose(motion.height(motion.time), [10e-9, -2e-9, 10e-9], rtol=1e-14)
+
+
+@pytest.mark.parametrize(
+    ("content", "reason"),
+    [
+        (b"", "is empty"),
+        (b"time (us),height (nm)\n", "at least 2"),
+        (b"time (us),height (nm)\n0,10\n", "at least 2"),
+        (b"0,10\n1,9\n", "no column 'time'"),
+        (b"time,height\n0,10\n1,9\n", "no column 'time' with a unit"),
+        (b"time (us),z (nm)\n0,10\n1,9\n", "no column 'height'"),
+        (b"time (nm),height (nm)\n0,10\n1,9\n", "'time (nm)' must name a unit of a time"),
+        (b"time (us),height (nm)\n0,10\n1,x\n", "line 3 ('1,x')"),
+        (b"time (us),height (nm)\n0,10\n1\n", "line 3 ('1')"),
+        (b"time (us),height (nm)\n0,10\n0,9\n", "must be later than"),
+        (b"time (us),height (nm)\n0,10\nnan,9\n", "must be a finite number"),
+        (b"time (us),height (nm)\n0,10\n1,inf\n", "must be a finite number"),
+        (b"time (us),height (nm)\n0,-10\n1,-12\n", "inside the surface"),
+        (b"\xff\xfe\x00", "is not text in UTF-8"),
+        (b"time (us),height (nm)\n" + b'"' + b"1" * 200_000, "is not a CSV file"),
+    ],
+)
+def test_bad_measured_motions(load, content, reason):
+    line = refusal(load, measured(load, content))
+    assert line.startswith("motion.file = 'motion.csv': ")
+    assert reason in line
+
+
+@pytest.mark.parametrize("name", ["none.csv", "", ".", "\u0000.csv", 3, "x" * 5000])
+def test_unreadable_measured_motions(load, name):
+    assert refusal(load, measured(load, b"", name)).startswith("motion.file = ")
+
+
+@given(st.binary(max_size=200))
+@few
+def test_garbage_measured_motions(load, content):
+    assert refusal(load, measured(load, content)).startswith("motion.file = ")

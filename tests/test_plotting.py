@@ -1,0 +1,201 @@
+"""Figures: what their axes, legends and lines say, drawn with all floating-point errors raised."""
+
+import io
+
+import matplotlib
+import numpy as np
+import pytest
+import xarray as xr
+from matplotlib.colors import to_hex
+from matplotlib.figure import Figure
+
+from softafm.plotting import plot
+
+
+@pytest.fixture(autouse=True)
+def _strict_floating_point():
+    with np.errstate(all="raise", under="ignore"):
+        yield
+
+
+def result(mode, time, tip_height, force, jump_time=()):
+    """A dataset of the agreed form with a given history and made-up observables."""
+    units = {"tip_height": "m", "force": "N", "jump_time": "s", "jump_energy": "J"}
+    scalars = {
+        "force_max": force.max(),
+        "force_min": force.min(),
+        "force_min_approach": force.min(),
+        "loop_energy": 8.71e-17,
+        "virial": -3.48e-17,
+        "dissipation": 8.71e-17,
+        "contact_time": 5e-7,
+        "indentation": 3e-9,
+    }
+    data = {"tip_height": ("time", tip_height), "force": ("time", force)}
+    data["jump_time"] = ("jump", np.array(jump_time, float))
+    data["jump_energy"] = ("jump", np.full(len(jump_time), 3e-22))
+    dataset = xr.Dataset({**data, **scalars}, coords={"time": time}, attrs={"mode": mode})
+    for name in dataset.variables:
+        dataset[name].attrs = {"units": units.get(name, ""), "long_name": name.replace("_", " ")}
+    return dataset
+
+
+def triangle(speed=5e-6, strength=1e-6, jump_time=()):
+    time = np.linspace(0, 40e-9 / speed, 201)
+    height = -10e-9 + speed * np.abs(time - time[100])
+    force = strength * (np.exp(-height / 5e-9) - np.where(time > time[100], 1.5, 0))
+    return result("force-distance", time, height, force, jump_time)
+
+
+def tap(cycles=1, strength=4e-9, jump_time=()):
+    time = np.linspace(0, cycles * 3.6e-6, 400 * cycles + 1)
+    height = 46e-9 + 49.6e-9 * np.cos(2 * np.pi * time / 3.6e-6)
+    force = strength * (np.exp(-height / 2e-9) - 2 * np.exp(-height / 4e-9))
+    return result("tapping-cycle", time, height, force, jump_time)
+
+
+def legend_texts(legend):
+    return [text.get_text() for text in legend.get_texts()]
+
+
+def settings():
+    return {name: value for name, value in matplotlib.rcParams.items() if name != "backend"}
+
+
+def curves(ax):
+    """Lines of data: not the zero lines, which have two points, nor jump markers."""
+    return [
+        line for line in ax.lines if line.get_linestyle() != "None" and len(line.get_xdata()) > 2
+    ]
+
+
+def test_force_distance_axes_name_quantity_and_unit():
+    (ax,) = plot(triangle()).axes
+    assert ax.get_xlabel() == "Tip height (nm)"
+    assert ax.get_ylabel() == "Force on the tip (µN)"
+
+
+@pytest.mark.parametrize(
+    ("strength", "unit"), [(1e-12, "pN"), (1e-9, "nN"), (1e-6, "µN"), (1e-3, "mN")]
+)
+def test_the_unit_of_force_suits_the_data(strength, unit):
+    dataset = triangle(strength=strength)
+    (ax,) = plot(dataset).axes
+    assert ax.get_ylabel() == f"Force on the tip ({unit})"
+    drawn = np.concatenate([line.get_ydata() for line in curves(ax)])
+    assert drawn.max() == pytest.approx(float(dataset.force_max) / strength)
+
+
+def test_approach_and_retract_are_told_apart_by_style_and_colour():
+    (ax,) = plot(triangle()).axes
+    approach, retract = curves(ax)
+    assert legend_texts(ax.get_legend()) == ["approach", "retract"]
+    assert approach.get_linestyle() == "-"
+    assert retract.get_linestyle() == "--"
+    assert approach.get_color() != retract.get_color()
+    assert np.all(np.diff(approach.get_xdata()) < 0)
+    assert np.all(np.diff(retract.get_xdata()) > 0)
+
+
+def test_three_speeds_overlaid_have_a_colour_each():
+    speeds = [5e-6, 2e-6, 1e-6]
+    (ax,) = plot([triangle(speed) for speed in speeds], ["5 µm/s", "2 µm/s", "1 µm/s"]).axes
+    texts = legend_texts(ax.get_legend())
+    assert texts == ["5 µm/s", "2 µm/s", "1 µm/s", "approach", "retract"]
+    colours = [to_hex(line.get_color()) for line in curves(ax)]
+    assert len(colours) == 6
+    assert len(set(colours)) == 3
+    assert colours[::2] == colours[1::2]
+
+
+def test_unnamed_runs_are_numbered():
+    (ax,) = plot([triangle(), triangle(2e-6)]).axes
+    assert legend_texts(ax.get_legend())[:2] == ["run 1", "run 2"]
+
+
+def test_elastic_jumps_are_marked_on_the_curve():
+    dataset = triangle(jump_time=[6.0e-3])
+    (ax,) = plot(dataset).axes
+    (marker,) = [line for line in ax.lines if line.get_marker() == "o"]
+    at_jump = dataset.interp(time=6.0e-3)
+    assert marker.get_xdata() == pytest.approx([float(at_jump.tip_height) * 1e9])
+    assert marker.get_ydata() == pytest.approx([float(at_jump.force) * 1e6])
+    assert "elastic jump" in legend_texts(ax.get_legend())
+
+
+def test_tapping_cycle_is_drawn_against_time_and_height_where_the_force_acts():
+    dataset = tap()
+    against_time, against_height = plot(dataset).axes
+    assert against_time.get_xlabel() == "Time (µs)"
+    assert against_time.get_ylabel() == "Force on the tip (nN)"
+    assert against_height.get_xlabel() == "Tip height (nm)"
+    felt = dataset.time.values[np.abs(dataset.force) >= 0.01 * np.abs(dataset.force).max()] * 1e6
+    low, high = against_time.get_xlim()
+    assert low < felt.min()
+    assert felt.max() < high
+    assert high - low < 0.5 * 3.6
+    assert "3.6 µs" in against_time.get_title()
+
+
+def test_tapping_cycle_states_virial_dissipation_and_peak_force():
+    dataset = tap()
+    dataset["force_max"] = 11.45e-9
+    title = plot(dataset).axes[1].get_title()
+    assert title == "virial −34.8 aJ, dissipation 87.1 aJ, peak force 11.45 nN"
+
+
+def test_overlaid_taps_state_their_observables_in_the_legend():
+    figure = plot([tap(), tap(strength=2e-9)], ["hard", "soft"])
+    (legend,) = figure.legends
+    assert [text.split(":")[0] for text in legend_texts(legend)] == ["hard", "soft"]
+    assert all("virial" in text for text in legend_texts(legend))
+
+
+def test_every_cycle_has_its_approach_and_retract():
+    against_time, _ = plot(tap(cycles=3)).axes
+    assert [line.get_linestyle() for line in curves(against_time)] == ["-", "--"] * 3
+
+
+def test_noise_of_a_measured_trajectory_makes_no_strokes():
+    dataset = triangle()
+    rng = np.random.default_rng(1)
+    noise = 0.05e-9 * rng.standard_normal(dataset.sizes["time"])
+    dataset["tip_height"] = dataset.tip_height + noise
+    (ax,) = plot(dataset).axes
+    assert [line.get_linestyle() for line in curves(ax)] == ["-", "--"]
+
+
+def test_a_run_without_any_force_is_drawn():
+    figure = plot(tap(strength=0.0))
+    assert figure.axes[0].get_ylabel() == "Force on the tip (N)"
+    figure.savefig(io.BytesIO(), format="png")
+
+
+@pytest.mark.parametrize("datasets", [[triangle(jump_time=[6e-3])] * 3, [tap(2, jump_time=[2e-6])]])
+@pytest.mark.parametrize("suffix", ["png", "svg", "pdf"])
+def test_figures_are_saved_without_pyplot_or_change_of_settings(datasets, suffix):
+    before = settings()
+    figure = plot(datasets)
+    assert isinstance(figure, Figure)
+    picture = io.BytesIO()
+    figure.savefig(picture, format=suffix)
+    assert picture.tell() > 1000
+    assert settings() == before
+
+
+def test_nothing_to_draw_is_refused():
+    with pytest.raises(ValueError, match="at least one"):
+        plot([])
+
+
+def test_a_wrong_number_of_labels_is_refused():
+    with pytest.raises(ValueError, match="labels has 1 entries: must have one a dataset, 2"):
+        plot([triangle(), triangle()], ["only one"])
+
+
+@pytest.mark.parametrize(
+    "datasets", [[triangle(), tap()], triangle().assign_attrs(mode="seismometer"), xr.Dataset()]
+)
+def test_modes_that_differ_or_have_no_figure_are_refused(datasets):
+    with pytest.raises(ValueError, match="must be force-distance or tapping-cycle"):
+        plot(datasets)
