@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from xarray import Dataset
 
 SUCCESS, FAILURE, BAD_INPUT = 0, 1, 2
+_TYPER_INTERRUPTED = 130
 _PICTURES = (".png", ".pdf", ".svg")
 
 app = typer.Typer(
@@ -50,7 +51,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     """Run the command line and return its exit code: 0 success, 2 bad input, 1 failure."""
     try:
         code = app(args=arguments, prog_name="softafm", standalone_mode=False)
-        return _interrupted() if code == 130 else int(code or SUCCESS)
+        return _interrupted() if code == _TYPER_INTERRUPTED else int(code or SUCCESS)
     except typer.TyperException as error:  # how typer reports a wrong option or argument
         return _complain(f"{error.format_message()} (see softafm --help)", BAD_INPUT)
     except _BadInput as error:
@@ -59,9 +60,6 @@ def main(arguments: Sequence[str] | None = None) -> int:
         return _complain(str(error), FAILURE)
     except (KeyboardInterrupt, typer.Abort):
         return _interrupted()
-    except BrokenPipeError:  # the reader of our output, such as head, has seen enough
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-        return FAILURE
     except Exception as error:
         if os.environ.get("SOFTAFM_TRACEBACK"):
             raise
@@ -88,14 +86,14 @@ def run(
     out: Annotated[Path | None, typer.Option(help="Result; default CONFIG.nc here.")] = None,
     overrides: Overrides = None,
     solver: Annotated[str | None, typer.Option(help="Name of the solver.")] = None,
-    tolerance: Annotated[float | None, typer.Option(help="Target relative error.")] = None,
+    tolerance: Annotated[str | None, typer.Option(help="Target relative error.")] = None,
     profiles: Annotated[bool, typer.Option("--profiles", help="Keep surface shapes.")] = False,
     force: Force = False,
 ) -> None:
     """Run an experiment file, save the result and show its observables."""
     changes = list(overrides or [])
     changes += [f"solver.name={solver}"] if solver is not None else []
-    changes += [f"run.tolerance={tolerance!r}"] if tolerance is not None else []
+    changes += [f"run.tolerance={tolerance}"] if tolerance is not None else []
     changes += ["run.profiles=true"] if profiles else []
     with _bad_input():
         from softafm import results

@@ -1,10 +1,8 @@
 """Experiment files: TOML with units as text, read into the objects a Python user would build."""
 
-import re
 import tomllib
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
-from difflib import get_close_matches
 from importlib import resources
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -14,28 +12,14 @@ from pydantic import ValidationError
 from softafm import schema
 from softafm.contact import Contact
 from softafm.modes.start import refuse_start_inside
+from softafm.refusals import ConfigError, as_written, nearest, one_of, problem, shown, unknown
 
 if TYPE_CHECKING:
     from xarray import Dataset
 
 LARGEST_FILE = 1_000_000
-_LONGEST_SHOWN = 60
 _TABLES = ("tip", "sample", "surface", "motion")
 _OPTIONAL_TABLES = ("solver", "run")
-_OTHER_NAMES = {
-    "W": "work_of_adhesion",
-    "E0": "G0",
-    "E_inf": "G_inf",
-    "creep_time": "relaxation_time",
-}
-"""What a constructor calls a value that the user may have written under another key."""
-
-
-class ConfigError(ValueError):
-    """An experiment file or an override that cannot be used: one line for each problem."""
-
-    def __init__(self, problems: Sequence[str]):
-        super().__init__("\n".join(_one_line(problem) for problem in problems))
 
 
 @dataclass(frozen=True)
@@ -95,7 +79,7 @@ class Experiment:
         except ValueError as error:
             for table in ("motion", "run"):
                 written = self.document.get(table, {})
-                line = _as_written(table, written, error)
+                line = as_written(table, written, error)
                 if line is not None:
                     raise ConfigError([line]) from error
             raise
@@ -126,7 +110,7 @@ def example_names() -> list[str]:
 def example_text(name: str) -> str:
     """Return a bundled experiment file; ConfigError if there is none of that name."""
     if name not in example_names():
-        raise ConfigError([f"example {_shown(name)}: unknown; {_nearest(name, example_names())}"])
+        raise ConfigError([f"example {shown(name)}: unknown; {nearest(name, example_names())}"])
     file = resources.files("softafm") / "examples" / f"{name}.toml"
     return file.read_text(encoding="utf-8")
 
@@ -163,14 +147,14 @@ def _override(document: dict[str, Any], override: str) -> None:
     names = [name.strip() for name in key.split(".")]
     if not equals or not all(names):
         raise ConfigError(
-            [f"override {_shown(override)}: must be key=value, such as sample.E0=3GPa"]
+            [f"override {shown(override)}: must be key=value, such as sample.E0=3GPa"]
         )
     table = document
     for depth, name in enumerate(names[:-1], start=1):
         table = table.setdefault(name, {})
         if not isinstance(table, dict):
             parent = ".".join(names[:depth])
-            raise ConfigError([f"override {_shown(override)}: {parent} is a value, not a table"])
+            raise ConfigError([f"override {shown(override)}: {parent} is a value, not a table"])
     table[names[-1]] = _override_value(text.strip())
 
 
@@ -187,16 +171,16 @@ def _experiment(document: Mapping[str, Any], folder: Path) -> Experiment:
     problems: list[str] = []
     mode = document.get("mode")
     known = ["mode", *_TABLES, *_OPTIONAL_TABLES]
-    problems += [_unknown(key, known, key) for key in document if key not in known]
+    problems += [unknown(key, known, key) for key in document if key not in known]
     modes = list(schema.MOTIONS)
     if mode is None:
-        problems.append(f"mode: missing; must be {_one_of(modes)}")
+        problems.append(f"mode: missing; must be {one_of(modes)}")
     elif mode in schema.ANNOUNCED:
         problems.append(
-            f"mode = {_shown(mode)}: is not available in this version; must be {_one_of(modes)}"
+            f"mode = {shown(mode)}: is not available in this version; must be {one_of(modes)}"
         )
     elif not isinstance(mode, str) or mode not in modes:
-        problems.append(f"mode = {_shown(mode)}: {_nearest(mode, modes)}")
+        problems.append(f"mode = {shown(mode)}: {nearest(mode, modes)}")
 
     built: dict[str, Any] = {}
     for name in (*_TABLES, *_OPTIONAL_TABLES):
@@ -216,7 +200,7 @@ def _experiment(document: Mapping[str, Any], folder: Path) -> Experiment:
         refuse_start_inside(contact, built["motion"])
     except ValueError as error:
         key = next(key for key in ("start", "mean_height", "file") if key in motion)
-        raise ConfigError([f"motion.{key} = {_shown(motion[key])}: {error}"]) from None
+        raise ConfigError([f"motion.{key} = {shown(motion[key])}: {error}"]) from None
     run = built.get("run", schema.Run())
     return Experiment(
         mode=str(mode),
@@ -235,21 +219,21 @@ def _build(name: str, document: Mapping[str, Any], mode: Any, folder: Path) -> A
         raise ConfigError([f"{name}: missing; add a table [{name}]"])
     written = document[name]
     if not isinstance(written, dict):
-        raise ConfigError([f"{name} = {_shown(written)}: must be a table, [{name}]"])
+        raise ConfigError([f"{name} = {shown(written)}: must be a table, [{name}]"])
     if name == "run":
         return _validated(name, schema.Run, written, None, folder)
     chooser, choices = schema.CHOICES.get(name) or ("shape", schema.MOTIONS[mode])
     names = list(choices)
     choice = written.get(chooser, names[0] if name == "motion" else None)
     if choice is None:
-        raise ConfigError([f"{name}.{chooser}: missing; must be {_one_of(names)}"])
+        raise ConfigError([f"{name}.{chooser}: missing; must be {one_of(names)}"])
     if not isinstance(choice, str) or choice not in choices:
-        raise ConfigError([f"{name}.{chooser} = {_shown(choice)}: {_nearest(choice, names)}"])
+        raise ConfigError([f"{name}.{chooser} = {shown(choice)}: {nearest(choice, names)}"])
     table = _validated(name, choices[choice], written, chooser, folder)
     try:
         return table.build()
     except (ValueError, ArithmeticError) as error:
-        line = _as_written(name, written, error) or f"{name}: {error}"
+        line = as_written(name, written, error) or f"{name}: {error}"
         raise ConfigError([line]) from error
 
 
@@ -262,74 +246,5 @@ def _validated(
     except ValidationError as invalid:
         valid = [*model.model_fields, *([chooser] if chooser else [])]
         raise ConfigError(
-            [_problem(name, model, error, valid) for error in invalid.errors(include_url=False)]
+            [problem(name, model, error, valid) for error in invalid.errors(include_url=False)]
         ) from None
-
-
-def _problem(name: str, model: type[schema.Table], error: Any, valid: list[str]) -> str:
-    """Put one of pydantic's errors into a sentence."""
-    key = error["loc"][0]
-    path = f"{name}.{key}" + "".join(f"[{index}]" for index in error["loc"][1:])
-    if error["type"] == "extra_forbidden":
-        return _unknown(key, valid, f"{name}.{key}")
-    if error["type"] == "missing":
-        what = model.model_fields[key].description
-        return f"{path}: missing" + (f"; must be {what}" if what else "")
-    reason = str(error.get("ctx", {}).get("error", error["msg"]))
-    return f"{path} = {_shown(error['input'])}: {reason}"
-
-
-def _as_written(table: str, written: Mapping[str, Any], error: Exception) -> str | None:
-    """Reword an object's refusal, ``field = value unit: reason``, with what the user wrote.
-
-    None if it names no field of the table.
-    """
-    match = re.match(r"(\w+)(?:\[(\d+)\])?(?: = [^:]*:)? (.*)", str(error), re.DOTALL)
-    if match is None:
-        return None
-    name, index, reason = match.groups()
-    if name not in written:
-        name = _OTHER_NAMES.get(name, name)
-    if name not in written:
-        return None
-    value = written[name]
-    if index is not None and isinstance(value, list):
-        name, value = f"{name}[{index}]", value[int(index)]
-
-    def other(mention: re.Match) -> str:
-        key = mention[1] if mention[1] in written else _OTHER_NAMES.get(mention[1], "")
-        return f"{table}.{key} = {_shown(written[key])}" if key in written else mention[0]
-
-    reason = re.sub(r"(\w+) = [-+.\de]+ [^\s,;)]+", other, reason)
-    return f"{table}.{name} = {_shown(value)}: {reason}"
-
-
-def _unknown(key: str, valid: Sequence[str], path: str) -> str:
-    return f"{path[:_LONGEST_SHOWN]}: unknown key; {_nearest(key, valid)}"
-
-
-def _nearest(given: object, valid: Sequence[str]) -> str:
-    """Say which of the valid names was probably meant, or all of them."""
-    near = get_close_matches(str(given)[:_LONGEST_SHOWN], valid, n=1, cutoff=0.6)
-    if near:
-        return f"did you mean '{near[0]}'? It must be {_one_of(valid)}"
-    return f"must be {_one_of(valid)}"
-
-
-def _one_of(names: Sequence[str]) -> str:
-    quoted = [f"'{name}'" for name in names]
-    return quoted[0] if len(quoted) == 1 else f"{', '.join(quoted[:-1])} or {quoted[-1]}"
-
-
-def _shown(value: object) -> str:
-    """Return a value as the user would recognise it, cut to a legible length."""
-    try:
-        text = repr(value)
-    except (ValueError, RecursionError):
-        return f"(a {type(value).__name__} too long to show)"
-    return text if len(text) <= _LONGEST_SHOWN else text[: _LONGEST_SHOWN - 3] + "..."
-
-
-def _one_line(text: str) -> str:
-    """Escape what would break or disturb the line."""
-    return "".join(c if c.isprintable() else repr(c)[1:-1] for c in text)

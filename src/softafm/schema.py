@@ -6,7 +6,7 @@ its fields are the table's other keys, and ``build`` returns the object.
 
 from dataclasses import fields
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated, Any, ClassVar
 
 from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, ValidationInfo, create_model
 
@@ -20,12 +20,12 @@ from softafm.surfaces import LennardJones
 from softafm.tips import Paraboloid
 
 
-def _quantity(kind: units.Kind):
-    return Annotated[
-        float,
-        BeforeValidator(lambda written: units.read_quantity(written, kind)),
-        Field(description=kind.valid),
-    ]
+def _read(kind: units.Kind) -> BeforeValidator:
+    return BeforeValidator(lambda written: units.read_quantity(written, kind))
+
+
+def _described(kind: units.Kind, prefix: str = "") -> Any:
+    return Field(description=prefix + kind.valid)
 
 
 def _number(written: Any) -> float:
@@ -70,23 +70,19 @@ def _file(written: Any, info: ValidationInfo) -> Path:
     return folder / written
 
 
-Length = _quantity(units.LENGTH)
-Time = _quantity(units.TIME)
-Speed = _quantity(units.SPEED)
-Frequency = _quantity(units.FREQUENCY)
-Modulus = _quantity(units.MODULUS)
-Joules = _quantity(units.ENERGY)
-EnergyPerArea = _quantity(units.ENERGY_PER_AREA)
+Length = Annotated[float, _read(units.LENGTH), _described(units.LENGTH)]
+Time = Annotated[float, _read(units.TIME), _described(units.TIME)]
+Speed = Annotated[float, _read(units.SPEED), _described(units.SPEED)]
+Frequency = Annotated[float, _read(units.FREQUENCY), _described(units.FREQUENCY)]
+Modulus = Annotated[float, _read(units.MODULUS), _described(units.MODULUS)]
+Joules = Annotated[float, _read(units.ENERGY), _described(units.ENERGY)]
+JoulesPerArea = Annotated[float, _read(units.ENERGY_PER_AREA), _described(units.ENERGY_PER_AREA)]
 Compliances = Annotated[
-    tuple[_quantity(units.COMPLIANCE), ...],
+    tuple[Annotated[float, _read(units.COMPLIANCE)], ...],
     BeforeValidator(_list),
-    Field(description=f"a list, each {units.COMPLIANCE.valid}"),
+    _described(units.COMPLIANCE, "a list, each "),
 ]
-Times = Annotated[
-    tuple[Time, ...],
-    BeforeValidator(_list),
-    Field(description=f"a list, each {units.TIME.valid}"),
-]
+Times = Annotated[tuple[Time, ...], BeforeValidator(_list), _described(units.TIME, "a list, each ")]
 Number = Annotated[float, BeforeValidator(_number), Field(description="a number, such as 0.49")]
 Count = Annotated[int, BeforeValidator(_count)]
 Flag = Annotated[bool, BeforeValidator(_flag)]
@@ -99,15 +95,18 @@ class Table(BaseModel):
 
     model_config = ConfigDict(extra="forbid", frozen=True, strict=True)
 
-    def given(self, *alternatives: tuple[str, ...]) -> tuple[str, ...]:
+    def build(self) -> Any:
+        """Return the object that the table describes; ValueError if it refuses the values."""
+        return self
+
+    def given(self, *alternatives: tuple[str, ...]) -> dict[str, float]:
         """Return the one of several groups of keys that the user gave, whole and alone."""
         present = [a for a in alternatives if any(getattr(self, k) is not None for k in a)]
-        keys = [k for a in present for k in a if getattr(self, k) is not None]
-        if len(present) == 1 and len(keys) == len(present[0]):
-            return present[0]
+        values = {k: getattr(self, k) for a in present for k in a if getattr(self, k) is not None}
+        if len(present) == 1 and len(values) == len(present[0]):
+            return values
         choices = ", or ".join(" and ".join(a) for a in alternatives)
-        found = ", ".join(keys) if keys else "none of them"
-        raise ValueError(f"give {choices}; found {found}")
+        raise ValueError(f"give {choices}; found {', '.join(values) or 'none of them'}")
 
 
 class ParaboloidTip(Table):
@@ -143,18 +142,15 @@ class StandardLinearSolidSample(Table):
     def build(self) -> StandardLinearSolid:
         moduli = self.given(("E0", "E_inf"), ("G0", "G_inf"))
         time = self.given(("creep_time",), ("relaxation_time",))
-        relaxes = time == ("relaxation_time",)
-        duration = self.relaxation_time if relaxes else self.creep_time
-        E0, E_inf = self.E0, self.E_inf
-        if moduli == ("G0", "G_inf"):
-            solid = StandardLinearSolid.from_shear(self.G0, self.G_inf, duration, self.poisson)
-            if not relaxes:
-                return solid
-            E0, E_inf = solid.E0, solid.E_inf
-        if relaxes:
-            from_relaxation = StandardLinearSolid.from_relaxation_time
-            return from_relaxation(E0, E_inf, duration, self.poisson)
-        return StandardLinearSolid(E0, E_inf, duration, self.poisson)
+        if "G0" in moduli:
+            (duration,) = time.values()
+            solid = StandardLinearSolid.from_shear(
+                **moduli, creep_time=duration, poisson=self.poisson
+            )
+            moduli = {"E0": solid.E0, "E_inf": solid.E_inf}
+        if "relaxation_time" in time:
+            return StandardLinearSolid.from_relaxation_time(**moduli, **time, poisson=self.poisson)
+        return StandardLinearSolid(**moduli, **time, poisson=self.poisson)
 
 
 class GeneralizedKelvinVoigtSample(Table):
@@ -175,13 +171,14 @@ class LennardJonesSurface(Table):
     """``[surface] law = "lennard-jones"``: a Hamaker constant or a work of adhesion."""
 
     hamaker: Joules | None = None
-    work_of_adhesion: EnergyPerArea | None = None
+    work_of_adhesion: JoulesPerArea | None = None
     z0: Length
 
     def build(self) -> LennardJones:
-        if self.given(("hamaker",), ("work_of_adhesion",)) == ("hamaker",):
-            return LennardJones(hamaker=self.hamaker, z0=self.z0)
-        return LennardJones.from_work_of_adhesion(self.work_of_adhesion, self.z0)
+        strength = self.given(("hamaker",), ("work_of_adhesion",))
+        if "hamaker" in strength:
+            return LennardJones(hamaker=strength["hamaker"], z0=self.z0)
+        return LennardJones.from_work_of_adhesion(strength["work_of_adhesion"], self.z0)
 
 
 class TriangleMotion(Table):
@@ -226,11 +223,20 @@ class Run(Table):
     profiles: Flag = False
 
 
-def _solver(solver: type) -> type[Table]:
-    """Return the table of a solver: its keys are the solver's own parameters."""
-    keys = {field.name: (field.type, field.default) for field in fields(solver)}
-    table = create_model(solver.__name__, __base__=Table, **keys)
-    table.build = lambda self: solver(**self.model_dump())
+class Solver(Table):
+    """``[solver]``: its other keys are the solver's own parameters."""
+
+    solver: ClassVar[type]
+
+    def build(self) -> Any:
+        return self.solver(**self.model_dump())
+
+
+def _solver(solver: type) -> type[Solver]:
+    """Return the table of a solver, a dataclass whose parameters all have defaults."""
+    keys: dict[str, Any] = {field.name: (field.type, field.default) for field in fields(solver)}
+    table = create_model(solver.__name__, __base__=Solver, **keys)
+    table.solver = solver
     return table
 
 

@@ -28,17 +28,13 @@ def observables(dataset: "Dataset") -> Table:
 def regime(experiment: "Experiment") -> Table:
     """Return a table of the numbers that say how a contact will behave and what it will cost."""
     contact, motion = experiment.contact, experiment.motion
-    breaks = motion.breaks
-    duration = float(breaks[-1] - breaks[0])
-    instants = np.concatenate([breaks, motion.landmarks, np.linspace(breaks[0], breaks[-1], 2001)])
-    lowest = float(np.min(motion.height(instants)))
+    first, last = float(motion.breaks[0]), float(motion.breaks[-1])
+    turns = np.concatenate([motion.breaks, motion.landmarks])
+    lowest = float(np.min(motion.height(turns)))
     radius = contact.contact_radius(lowest)
-    table = _table(f"{experiment.mode}, before any run")
 
-    for when, tabor in (
-        ("fast", contact.tabor_instantaneous),
-        ("slow", contact.tabor_relaxed),
-    ):
+    table = _table(f"{experiment.mode}, before any run")
+    for when, tabor in (("fast", contact.tabor_instantaneous), ("slow", contact.tabor_relaxed)):
         table.add_row(f"Tabor number, {when}", f"{tabor:.3g}", _tabor_in_words(tabor))
     for when, length in (
         ("fast", contact.cohesive_length_instantaneous),
@@ -50,49 +46,14 @@ def regime(experiment: "Experiment") -> Table:
     table.add_row("lowest tip height", readable(lowest, "m"), "above the undeformed surface")
     jkr = "JKR, slow, at the lowest height" if radius else "none is expected to last"
     table.add_row("contact radius", readable(radius, "m"), jkr)
-    table.add_row("time of the motion", readable(duration, "s"), "")
+    table.add_row("time of the motion", readable(last - first, "s"), "")
     for creep_time in map(float, contact.sample.reduced_compliance.retardation_times):
-        words = _creep_in_words(creep_time / duration)
+        words = _creep_in_words(creep_time / (last - first))
         table.add_row("creep time", readable(creep_time, "s"), words)
     cycles = getattr(motion, "cycles", 1)
     swept = 2 * radius / contact.cohesive_length * cycles
     reason = f"the edge crosses at most {swept:.2g} cohesive lengths"
     table.add_row("expected cost", _cost_in_words(swept, cycles), reason)
-    return table
-
-
-def regime(experiment: "Experiment") -> Table:
-    """Return a table of the numbers that say how a contact will behave and what it will cost."""
-    contact, motion = experiment.contact, experiment.motion
-    breaks = motion.breaks
-    duration = float(breaks[-1] - breaks[0])
-    instants = np.concatenate([breaks, motion.landmarks, np.linspace(breaks[0], breaks[-1], 2001)])
-    lowest = float(np.min(motion.height(instants)))
-    radius = contact.contact_radius(lowest)
-    table = _table(f"{experiment.mode}, before any run")
-
-    for when, tabor in (
-        ("fast", contact.tabor_instantaneous),
-        ("slow", contact.tabor_relaxed),
-    ):
-        table.add_row(f"Tabor number, {when}", f"{tabor:.3g}", _tabor_in_words(tabor))
-    for when, length in (
-        ("fast", contact.cohesive_length_instantaneous),
-        ("slow", contact.cohesive_length),
-    ):
-        table.add_row(f"cohesive length, {when}", readable(length, "m"), "tension zone at the edge")
-    work = readable(contact.surface.work_of_adhesion, "J/m²")
-    table.add_row("work of adhesion", work, "per area, to part the surfaces")
-    table.add_row("lowest tip height", readable(lowest, "m"), "above the undeformed surface")
-    jkr = "JKR, slow, at the lowest height" if radius else "none is expected to last"
-    table.add_row("contact radius", readable(radius, "m"), jkr)
-    table.add_row("time of the motion", readable(duration, "s"), "")
-    for creep_time in map(float, contact.sample.reduced_compliance.retardation_times):
-        words = _creep_in_words(creep_time / duration)
-        table.add_row("creep time", readable(creep_time, "s"), words)
-    swept = 2 * radius / contact.cohesive_length * getattr(motion, "cycles", 1)
-    reason = f"the edge crosses {swept:.2g} cohesive lengths"
-    table.add_row("expected cost", _cost_in_words(swept), reason)
     return table
 
 

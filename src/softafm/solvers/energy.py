@@ -147,37 +147,77 @@ class _Run:
 
     def rest(self):
         """Put the surface in equilibrium with the tip at its first height, without memory."""
+        k, clock = self.kernel, self.clock
+        work = self.contact.surface.work_of_adhesion
+        clock[k.TIME] = self.motion.breaks[0]
+        clock[k.FRAME] = self.controls.open_frame
+        clock[k.FORCE_SCALE] = 0.2 * np.pi * self.contact.tip.radius * work
+        row = self.records[1]
+        row[:] = 0.0
+        self._settle(row)
+        self._keep(row[None], self.fields[k.DEFORMATION][None])
+
+    def _settle(self, row) -> float:
+        """Equilibrate at frozen memory, note the state in ``row`` and return its energy, J."""
         k, mesh, clock = self.kernel, self.mesh, self.clock
         height, profile, law, potential = self.functions
-        n, frame = mesh.nodes.size, self.controls.open_frame
-        start = float(self.motion.breaks[0])
-        tip, scratch = np.empty(n), np.empty(n)
+        n, frame = mesh.nodes.size, clock[k.FRAME]
+        tip, pressure, scratch = np.empty(n), np.empty(n), np.empty(n)
         profile(frame * mesh.nodes, self.parameters.tip, tip, n)
-        h0 = height(start, self.parameters.height)
-        u, compliance = self.fields[k.DEFORMATION], self.parameters.compliance[0]
-        done = k.settle(
-            u, np.zeros(n), frame * compliance, h0 + tip, mesh, law, potential,
-            self.parameters.law, 1e-6, np.empty(2),
+        h0 = height(clock[k.TIME], self.parameters.height)
+        u = self.fields[k.DEFORMATION]
+        instantaneous, *modes = self.parameters.compliance
+        v = -np.array(modes) @ self.fields[k.MEMORY :] if modes else np.zeros(n)
+        energy = np.empty(2)
+        iterations = k.settle(
+            u, v, frame * instantaneous, h0 + tip, mesh, law, potential, self.parameters.law,
+            self.controls.newton, energy,
         )  # fmt: skip
-        if done < 0:
-            raise DivergedError(f"no stable surface at the first tip height, {h0:g} m")
-        self.fields[k.LOAD] = -u / compliance
-        gap, pressure = h0 + tip - u, np.empty(n)
+        if iterations < 0:
+            raise DivergedError(f"no stable surface at tip height {h0:g} m", self.history(0.0))
+        self.fields[k.LOAD] = (v - u) / instantaneous
+        gap = h0 + tip - u
         law(gap, self.parameters.law, pressure, scratch, n)
         force = k.tip_force(
             pressure, gap, mesh, frame, tip[-1], potential, self.parameters.law, scratch
         )
-        work = self.contact.surface.work_of_adhesion
-        clock[k.TIME], clock[k.AXIS_GAP] = start, gap[0]
-        clock[k.FRAME] = clock[k.FRAME_EARLIER] = clock[k.FRAME_EARLIEST] = frame
+        clock[k.FRAME_EARLIER] = clock[k.FRAME_EARLIEST] = frame
         clock[k.EDGE] = frame * k.radius_of_gap(gap, mesh.nodes, self.controls.gap_of_tension)
-        clock[k.FORCE] = force
-        clock[k.FORCE_SCALE] = max(abs(force), 0.2 * np.pi * self.contact.tip.radius * work)
-        first = np.zeros((2, k.RECORD_WIDTH))
-        row = first[1]
-        row[k.R_TIME], row[k.R_HEIGHT], row[k.R_FORCE] = start, h0, force
+        zone = frame * k.radius_of_gap(gap, mesh.nodes, 2 * self.controls.gap_of_tension)
+        coarseness = frame * mesh.edge_spacing / (zone - clock[k.EDGE]) if clock[k.EDGE] else 0.0
+        clock[k.AXIS_GAP], clock[k.FORCE], clock[k.HISTORY] = gap[0], force, 1
+        clock[k.FORCE_SCALE] = max(clock[k.FORCE_SCALE], abs(force))
+        row[k.R_TIME], row[k.R_HEIGHT], row[k.R_FORCE] = clock[k.TIME], h0, force
         row[k.R_EDGE], row[k.R_AXIS], row[k.R_FRAME] = clock[k.EDGE], u[0], frame
-        self._keep(first, u[None].repeat(2, axis=0), 2)
+        row[k.R_COARSENESS] = coarseness
+        return 2 * np.pi * frame**2 * energy[1] + self._energy_beyond(frame, h0)
+
+    def _energy_beyond(self, frame, h0) -> float:
+        """Interaction energy of the flat surface outside the mesh, J."""
+        end = frame * self.mesh.nodes[-1]
+        x, weights = np.polynomial.legendre.leggauss(16)
+        r = 2 * end / (1 + x)
+        density = self.contact.surface.potential(h0 + self.contact.tip.profile(r))
+        return 2 * np.pi * float(np.sum(weights * density * r**3 / (2 * end)))
+
+    def _land(self, row):
+        """End a fall: let the mesh follow to where the edge has gone, and note the energy released.
+
+        The shape that the surface fell to was found on the mesh it fell from, which may be far too
+        coarse or too small there.
+        """
+        k = self.kernel
+        before = row[k.R_JUMP] + self._energy_beyond(row[k.R_FRAME], row[k.R_HEIGHT])
+        after = self._settle(row)
+        for _ in range(50):
+            edge = self.clock[k.EDGE]
+            stretch = k.frame_for(edge, self.controls.open_frame) / self.clock[k.FRAME]
+            level = self._level_for(stretch * row[k.R_COARSENESS])
+            if level == self.level and abs(stretch - 1) < self.mesh.edge_spacing:
+                break
+            self._move_to(level, stretch)
+            after = self._settle(row)
+        row[k.R_JUMP] = before - after
 
     def most_per_step(self, seconds):
         """Let no step be longer, however little happens: smooth curves need points."""
@@ -205,7 +245,13 @@ class _Run:
             self.fields, self.clock, self.records, shapes,
         )  # fmt: skip
         count = int(self.records[0, 0])
-        self._keep(self.records, shapes, count)
+        if outcome == k.FALL:
+            self._keep(self.records[1 : count - 1], shapes[1 : count - 1])
+            landing = self.records[count - 1]
+            self._land(landing)
+            self._keep(landing[None], self.fields[k.DEFORMATION][None])
+        else:
+            self._keep(self.records[1:count], shapes[1:count])
         if outcome == k.STUCK:
             raise DivergedError(
                 f"stopped at t = {self.time:g} s after {self.clock[k.TRIES]:.0f} attempted steps "
@@ -213,39 +259,43 @@ class _Run:
                 self.history(0.0),
             )
         if outcome == k.REMESH:
-            self._remesh(self.records[count - 1, k.R_COARSENESS])
+            self._move_to(self._level_for(self.records[count - 1, k.R_COARSENESS]), 1.0)
         return outcome == k.FINISHED
 
-    def _keep(self, records, shapes, count):
+    def _keep(self, records, shapes):
         k = self.kernel
-        self.chunks.append(records[1:count].copy())
+        self.chunks.append(records.copy())
         if self.keep_shapes:
-            mesh = self.mesh
-            for row, shape in zip(records[1:count], shapes[1:count], strict=True):
-                self.shapes.append((row[k.R_FRAME], mesh, shape.copy()))
-        if self.level == self.finest_level:
-            coarseness = records[1:count, k.R_COARSENESS]
-            if coarseness.size and coarseness.max() > self.coarsest[0]:
-                edge = records[1 + coarseness.argmax(), k.R_EDGE]
-                self.coarsest = float(coarseness.max()), float(edge)
+            for row, shape in zip(records, shapes, strict=True):
+                self.shapes.append((row[k.R_FRAME], self.mesh, shape.copy()))
+        if self.level == self.finest_level and len(records):
+            worst = records[records[:, k.R_COARSENESS].argmax()]
+            if worst[k.R_COARSENESS] > self.coarsest[0]:
+                self.coarsest = float(worst[k.R_COARSENESS]), float(worst[k.R_EDGE])
 
-    def _remesh(self, coarseness):
-        """Change to the mesh whose spacing suits the cohesive zone as it is now."""
-        k, old = self.kernel, self.mesh
-        spacing = old.edge_spacing * self.target / coarseness
+    def _level_for(self, coarseness) -> int:
+        """Level of the mesh that suits the cohesive zone, seen ``coarseness`` from this one."""
+        if coarseness == 0:
+            return min(_FIRST_LEVEL, self.finest_level)
+        spacing = self.mesh.edge_spacing * self.target / coarseness
         level = ceil(2 * log2(_COARSEST_SPACING / spacing) - 1e-9)
-        self.level = min(max(level, 0), self.finest_level)
-        self.mesh = new = self._mesh(self.level)
-        fields = np.empty((self.fields.shape[0], new.nodes.size))
+        return min(max(level, 0), self.finest_level)
+
+    def _move_to(self, level, stretch):
+        """Carry all fields to the mesh of this level, in frames ``stretch`` times larger."""
+        k, old = self.kernel, self.mesh
+        self.level, self.mesh = level, self._mesh(level)
+        fields = np.empty((self.fields.shape[0], self.mesh.nodes.size))
         for before, after in zip(self.fields, fields, strict=True):
             k.transfer(
-                before, old.nodes.size, old.nodes[-1], old.edge_spacing, old.growth, 1.0,
-                new.nodes, after,
+                before, old.nodes.size, old.nodes[-1], old.edge_spacing, old.growth, stretch,
+                self.mesh.nodes, after,
             )  # fmt: skip
         self.fields = fields
+        self.clock[k.FRAME : k.FRAME_EARLIEST + 1] *= stretch
         self.meshes += 1
-        self.most_nodes = max(self.most_nodes, new.nodes.size)
-        self.finest_spacing = min(self.finest_spacing, new.edge_spacing)
+        self.most_nodes = max(self.most_nodes, self.mesh.nodes.size)
+        self.finest_spacing = min(self.finest_spacing, self.mesh.edge_spacing)
 
     def history(self, seconds) -> History:
         """Collect what was recorded."""
@@ -256,7 +306,6 @@ class _Run:
         cuts = sorted([(i, i + 1) for i in breaks] + [(i, i) for i in np.flatnonzero(jumped)])
         starts = [0] + [start for start, _ in cuts]
         ends = [end for _, end in cuts] + [time.size]
-        events = one_fall_each(np.flatnonzero(jumped))
         return History(
             time=time,
             tip_height=records[:, k.R_HEIGHT],
@@ -265,8 +314,8 @@ class _Run:
             axis_deformation=records[:, k.R_AXIS],
             viscous_power=records[:, k.R_LOSS],
             pieces=tuple(slice(int(a), int(b)) for a, b in zip(starts, ends, strict=True)),
-            jump_time=time[[event[0] for event in events]],
-            jump_energy=np.array([records[event, k.R_JUMP].sum() for event in events]),
+            jump_time=time[jumped],
+            jump_energy=records[jumped, k.R_JUMP],
             profiles=self._profiles() if self.keep_shapes else None,
             diagnostics={
                 "steps": time.size - 1,
@@ -312,11 +361,6 @@ class _Run:
                 index <= last, spline(np.minimum(index, last)), shape[-1] * end / np.fmax(radius, end)
             )
         return Profiles(radius, deformation)
-
-
-def one_fall_each(steps) -> list[np.ndarray]:
-    """Group the indices of jump steps: those a few steps apart are one fall, seen on finer meshes."""
-    return np.split(steps, np.flatnonzero(np.diff(steps) > 3) + 1) if steps.size else []
 
 
 def mirrored(values):

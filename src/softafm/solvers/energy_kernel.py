@@ -27,7 +27,7 @@ _CONST = types.Array(float64, 1, "C", readonly=True)
 _CONST2 = types.Array(float64, 2, "C", readonly=True)
 
 # Why `advance` came back.
-FINISHED, FULL, REMESH, STUCK = range(4)
+FINISHED, FULL, REMESH, FALL, STUCK = range(5)
 
 # Rows of `fields`: the last three shapes, the last two loads q, then one row per memory mode y_m.
 DEFORMATION, EARLIER, EARLIEST, LOAD, LOAD_EARLIER, MEMORY = range(6)
@@ -43,7 +43,7 @@ HISTORY, TRIES, NEWTONS = range(14, 17)
 CLOCK_SIZE = 17
 
 # Columns of a record. COARSENESS is the node spacing at the edge over the width of the cohesive
-# zone; JUMP the energy released if the step was an elastic jump.
+# zone; JUMP the energy Π before the step if it was an elastic jump, else 0.
 R_TIME, R_HEIGHT, R_FORCE, R_EDGE, R_AXIS, R_LOSS, R_COARSENESS, R_FRAME, R_JUMP = range(9)
 RECORD_WIDTH = 9
 
@@ -76,7 +76,7 @@ class Controls(NamedTuple):
 
     ``prediction``, ``memory`` and ``force`` are the errors allowed per step; ``newton`` the accuracy
     of an equilibrium; all relative to the gap, but ``force`` to the largest force so far.
-    ``slack`` is how far the frame may trail the edge, in edge spacings; remeshing is asked for when
+    ``slack`` is how far the edge moves, in edge spacings, while the frame catches up with it; remeshing is asked for when
     the coarseness of a record leaves ``finest`` to ``coarsest``.
     """
 
@@ -340,20 +340,29 @@ def extrapolation_weights(history, step, last, before, weights):
         weights[2] = step * near / (before * (last + before))
 
 
+@njit(float64(float64, float64), cache=True)
+def frame_for(edge, open_frame):
+    """Frame radius that suits a contact edge; a contact too small to fill the field of attraction
+    is seen from a wider frame, ``open_frame`` when there is none."""
+    return max(edge, open_frame - 1.5 * edge)
+
+
 @njit(float64(float64, _V, MESH, CONTROLS), cache=True)
 def following_frame(step, clock, mesh, controls):
-    """Frame radius for the next step: the edge carried on at its speed, within the slack.
+    """Frame radius for the next step, which rides along with the edge.
 
-    A contact too small to fill the field of attraction is seen from a wider frame.
+    It moves as far as the edge will, and makes up for what it lags while the edge passes the
+    nodes; it stands still when the edge does, so that short steps see the same mesh.
     """
-    edge = clock[EDGE]
-    if clock[HISTORY] > 1:
-        ahead = (clock[EDGE] - clock[EDGE_EARLIER]) * step / clock[LAST]
-        edge += min(max(ahead, -0.2 * edge), 0.2 * edge)
-    frame = max(edge, controls.open_frame - 1.5 * edge)
-    if abs(frame - clock[FRAME]) < controls.slack * mesh.edge_spacing * clock[FRAME]:
-        return clock[FRAME]
-    return frame
+    frame, edge = clock[FRAME], clock[EDGE]
+    if clock[HISTORY] < 2:
+        return frame
+    ahead = (edge - clock[EDGE_EARLIER]) * step / clock[LAST]
+    ahead = min(max(ahead, -0.2 * edge), 0.2 * edge)
+    suited = frame_for(edge, controls.open_frame)
+    pace = min(1.0, abs(ahead) / (controls.slack * mesh.edge_spacing * frame))
+    ridden = frame + frame_for(edge + ahead, controls.open_frame) - suited
+    return max(ridden + pace * (suited - frame), 0.5 * frame)
 
 
 @njit((float64, float64, int64, _M, _V, MESH, _V, _V, _V), cache=True)
@@ -397,7 +406,7 @@ def _move_clock(clock, step, frame, edge, force):
 def advance(
     height, profile, law, potential, parameters, mesh, controls, fields, clock, records, shapes
 ):
-    """Step the surface in time until ``controls.end``, full records, or a need to remesh.
+    """Step the surface in time until ``controls.end``, full records, a need to remesh or a fall.
 
     ``fields`` (MEMORY + modes, n) and ``clock`` hold the state and are updated. Every accepted step
     fills a row of ``records``, from row 1 on, and of ``shapes`` (the deformation) if that has rows;
@@ -498,7 +507,7 @@ def advance(
                 moved = max(moved, abs(u[i] - guess[i]) / gap[i])
             law(gap, parameters.law, pressure, scratch, n)
             if moved > 0.1:
-                jump = 2.0 * pi * frame * frame * (energy[0] - energy[1])
+                jump = 2.0 * pi * frame * frame * energy[0]
             history = 0
 
         for i in range(n):
@@ -566,6 +575,9 @@ def advance(
             for i in range(n):
                 shapes[count, i] = u[i]
         count += 1
+        if jump != 0.0:
+            outcome = FALL
+            break
         if edge > 0.0 and not controls.finest <= coarseness <= controls.coarsest:
             outcome = REMESH
             break
