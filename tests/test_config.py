@@ -1,5 +1,6 @@
 """Experiment files: what they mean, and that nothing wrong in them passes or crashes."""
 
+import contextlib
 import json
 import math
 import os
@@ -11,7 +12,7 @@ from hypothesis import strategies as st
 
 import softafm as sa
 from softafm.config import ConfigError, Experiment, example_names, example_text, load_experiment
-from softafm.units import LENGTH, MODULUS, readable, read_quantity
+from softafm.units import LENGTH, MODULUS, read_quantity, readable
 
 TAP = {
     "mode": "tapping-cycle",
@@ -55,9 +56,7 @@ OF_KIND["J"] = {"J", "eV"}
 fields = st.sampled_from(sorted(QUANTITIES))
 positive_fields = st.sampled_from(sorted(POSITIVE))
 printable = st.text(st.characters(exclude_categories=["Cs", "Cc"]), max_size=30)
-anything = st.one_of(
-    st.booleans(), st.integers(), st.floats(), printable, st.lists(st.integers())
-)
+anything = st.one_of(st.booleans(), st.integers(), st.floats(), printable, st.lists(st.integers()))
 few = settings(max_examples=60, deadline=None)
 
 
@@ -348,13 +347,11 @@ def test_garbage_files(load, content):
         load(content)
 
 
-@given(st.text(max_size=40))
+@given(st.one_of(st.just(""), fields.map("{}=".format)), st.text(max_size=40))
 @settings(max_examples=150, deadline=None)
-def test_garbage_overrides(load, override):
-    try:
-        load(TAP, override)
-    except ConfigError as refused:
-        assert str(refused)
+def test_garbage_overrides(load, start, rest):
+    with contextlib.suppress(ConfigError):
+        load(TAP, start + rest)
 
 
 @pytest.mark.parametrize("path", [f"{t}.{k}" for t in TAP if t != "mode" for k in TAP[t]])
@@ -468,10 +465,12 @@ def test_unreadable_files(load, content, reason):
 def test_a_huge_number_is_refused_in_a_short_line(load):
     text = toml(TAP).replace("0.49", "0x" + "f" * 100_000)
     assert refusal(load, text).startswith("sample.poisson = ")
+    assert refusal(load, TAP, "mode=0x" + "f" * 100_000).startswith("mode = ")
 
 
 def test_missing_files_folders_and_pipes(tmp_path):
-    os.mkfifo(tmp_path / "pipe.toml")
+    if hasattr(os, "mkfifo"):
+        os.mkfifo(tmp_path / "pipe.toml")
     for name, reason in (
         ("none.toml", "no such file"),
         ("", "is a directory"),
@@ -492,7 +491,9 @@ def measured(load, content, name="motion.csv"):
 
 
 def test_a_measured_motion_lies_beside_the_file(load):
-    content = b"\xef\xbb\xbfheight (nm),force (V),time (us)\r\n10,0.1,0\r\n\r\n-2,0.2,1.5\r\n10,0,3\r\n"
+    content = (
+        b"\xef\xbb\xbfheight (nm),force (V),time (us)\r\n10,0.1,0\r\n\r\n-2,0.2,1.5\r\n10,0,3\r\n"
+    )
     motion = load(measured(load, content)).motion
     np.testing.assert_allclose(motion.time, [0, 1.5e-6, 3e-6], rtol=1e-14)
     np.testing.assert_allclose(motion.height(motion.time), [10e-9, -2e-9, 10e-9], rtol=1e-14)

@@ -5,8 +5,10 @@ Everything heavy is imported inside the commands, so that ``softafm --help`` ans
 
 import io
 import os
+import signal
 import sys
 import tempfile
+import threading
 import warnings
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
@@ -98,13 +100,21 @@ def run(
     with _bad_input():
         from softafm import results
         from softafm.config import ConfigError, load_experiment
+        from softafm.progress import reporting
         from softafm.summary import observables
 
         experiment = load_experiment(config, changes)
         out = _output(out, f"{config.stem}.nc", (".nc",), force)
     with _visible_warnings():
         try:
-            dataset = experiment.run(progress=sys.stderr.isatty())
+            with _heeding_interrupts() as heed, reporting(sys.stderr.isatty()) as report:
+
+                def progress(fraction: float, message: str) -> None:
+                    heed()
+                    if report is not None:
+                        report(fraction, message)
+
+                dataset = experiment.run(progress)
         except ConfigError as error:
             raise _BadInput(str(error)) from error
         except RuntimeError as error:
@@ -254,6 +264,38 @@ def _show(renderable) -> None:
     from rich.console import Console
 
     Console().print(renderable)
+
+
+@contextmanager
+def _heeding_interrupts() -> Iterator[Callable[[], None]]:
+    """Yield what a run must call now and then, for Ctrl-C to end it without fail.
+
+    While arguments enter compiled code, numba loses a KeyboardInterrupt or turns it into another
+    error, so Ctrl-C is noted as well as raised.
+    """
+    pressed = False
+
+    def press(number, frame):
+        nonlocal pressed
+        pressed = True
+        raise KeyboardInterrupt
+
+    def heed() -> None:
+        if pressed:
+            raise KeyboardInterrupt
+
+    ours = signal.getsignal(signal.SIGINT) is signal.default_int_handler
+    ours = ours and threading.current_thread() is threading.main_thread()
+    if ours:
+        signal.signal(signal.SIGINT, press)
+    try:
+        yield heed
+    except Exception:
+        heed()
+        raise
+    finally:
+        if ours:
+            signal.signal(signal.SIGINT, signal.default_int_handler)
 
 
 @contextmanager

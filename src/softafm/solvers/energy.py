@@ -14,9 +14,10 @@ from softafm.halfspace.mesh import node_index, unit_mesh
 from softafm.solvers.history import History, Profiles
 
 _COARSEST_SPACING = 0.3
-_EXTENT = 8.0
-_FIRST_LEVEL = 3
+EXTENT = 8.0
+_FIRST_LEVEL = 1
 _CHUNK = 256
+_POINTS, _WEIGHTS = np.polynomial.legendre.leggauss(16)
 
 
 @dataclass(frozen=True)
@@ -108,7 +109,7 @@ class _Run:
         self.strictness = strictness = tolerance / 1e-2
         self.target = 0.2 * strictness**0.2
         self.growth = 0.25 * min(1.0, strictness**0.1)
-        self.finest_level = max(0, ceil(2 * log2(_COARSEST_SPACING / solver.finest_spacing)))
+        self.finest_level = max(0, ceil(log2(_COARSEST_SPACING / solver.finest_spacing)))
         self.level = min(_FIRST_LEVEL, self.finest_level)
         self.mesh = self._mesh(self.level)
         self.controls = kernel.Controls(
@@ -134,6 +135,7 @@ class _Run:
         self.keep_shapes = keep_shapes
         self.chunks: list[np.ndarray] = []
         self.shapes: list[tuple] = []
+        self.falls = 0
         self.meshes, self.most_nodes, self.finest_spacing = 1, n, self.mesh.edge_spacing
         self.coarsest = 0.0, 0.0
 
@@ -142,8 +144,8 @@ class _Run:
         return self.clock[self.kernel.TIME]
 
     def _mesh(self, level):
-        spacing = _COARSEST_SPACING * 2 ** (-level / 2)
-        return self.kernel.Mesh(*unit_mesh(spacing, self.growth, _EXTENT))
+        spacing = _COARSEST_SPACING * 2.0 ** -level
+        return self.kernel.Mesh(*unit_mesh(spacing, self.growth, EXTENT))
 
     def rest(self):
         """Put the surface in equilibrium with the tip at its first height, without memory."""
@@ -195,10 +197,9 @@ class _Run:
     def _energy_beyond(self, frame, h0) -> float:
         """Interaction energy of the flat surface outside the mesh, J."""
         end = frame * self.mesh.nodes[-1]
-        x, weights = np.polynomial.legendre.leggauss(16)
-        r = 2 * end / (1 + x)
+        r = 2 * end / (1 + _POINTS)
         density = self.contact.surface.potential(h0 + self.contact.tip.profile(r))
-        return 2 * np.pi * float(np.sum(weights * density * r**3 / (2 * end)))
+        return 2 * np.pi * float(np.sum(_WEIGHTS * density * r**3 / (2 * end)))
 
     def _land(self, row):
         """End a fall: let the mesh follow to where the edge has gone, and note the energy released.
@@ -221,6 +222,7 @@ class _Run:
 
     def most_per_step(self, seconds):
         """Let no step be longer, however little happens: smooth curves need points."""
+        self.falls = 0
         longest = seconds * self.strictness**0.25
         self.controls = self.controls._replace(longest_step=longest)
 
@@ -236,7 +238,7 @@ class _Run:
         k = self.kernel
         controls = self.controls._replace(
             end=float(stop),
-            finest=0.4 * self.target if self.level > 0 else 0.0,
+            finest=0.35 * self.target if self.level > 0 else 0.0,
             coarsest=1.3 * self.target if self.level < self.finest_level else np.inf,
         )
         shapes = np.empty((_CHUNK if self.keep_shapes else 0, self.mesh.nodes.size))
@@ -249,6 +251,10 @@ class _Run:
             self._keep(self.records[1 : count - 1], shapes[1 : count - 1])
             landing = self.records[count - 1]
             self._land(landing)
+            self.falls += 1
+            if self.falls > 2:
+                # Surfaces fall once or twice; many small falls are the edge caught by the nodes.
+                self.target, self.falls = max(self.target / 2, 0.01), 0
             self._keep(landing[None], self.fields[k.DEFORMATION][None])
         else:
             self._keep(self.records[1:count], shapes[1:count])
@@ -278,7 +284,7 @@ class _Run:
         if coarseness == 0:
             return min(_FIRST_LEVEL, self.finest_level)
         spacing = self.mesh.edge_spacing * self.target / coarseness
-        level = ceil(2 * log2(_COARSEST_SPACING / spacing) - 1e-9)
+        level = ceil(log2(_COARSEST_SPACING / spacing) - 1e-9)
         return min(max(level, 0), self.finest_level)
 
     def _move_to(self, level, stretch):
@@ -324,6 +330,7 @@ class _Run:
                 "meshes": self.meshes,
                 "most_nodes": self.most_nodes,
                 "finest_spacing": self.finest_spacing,
+                "growth": self.growth,
                 "wall_time": seconds,
             },
             warnings=self._warnings(),

@@ -4,6 +4,8 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+_POINTS, _WEIGHTS = np.polynomial.legendre.leggauss(4)
+
 
 @dataclass(frozen=True)
 class Profiles:
@@ -48,7 +50,6 @@ class History:
         """
         from scipy.interpolate import make_interp_spline
 
-        points, gauss = np.polynomial.legendre.leggauss(4)
         total = 0.0
         for piece in self.pieces:
             time = self.time[piece]
@@ -59,8 +60,8 @@ class History:
                 continue
             spline = make_interp_spline(time, values[piece], k=min(3, time.size - 1))
             middle, half = (edges[1:] + edges[:-1]) / 2, np.diff(edges) / 2
-            at = middle[:, None] + half[:, None] * points
-            total += float(np.sum(spline(at) * weight(at) * gauss * half[:, None]))
+            at = middle[:, None] + half[:, None] * _POINTS
+            total += float(np.sum(spline(at) * weight(at) * _WEIGHTS * half[:, None]))
         return total
 
     def extreme(self, values, sign: int, start=-np.inf, stop=np.inf) -> float:
