@@ -44,6 +44,11 @@ def triangle(time, parameters):
 
 
 @compiled(HEIGHT)
+def still(time, parameters):
+    return parameters[0]
+
+
+@compiled(HEIGHT)
 def sine(time, parameters):
     mean, amplitude, frequency = parameters[0], parameters[1], parameters[2]
     return mean + amplitude * cos(2 * pi * frequency * time)

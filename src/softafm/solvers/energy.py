@@ -135,7 +135,6 @@ class _Run:
         self.keep_shapes = keep_shapes
         self.chunks: list[np.ndarray] = []
         self.shapes: list[tuple] = []
-        self.falls = 0
         self.meshes, self.most_nodes, self.finest_spacing = 1, n, self.mesh.edge_spacing
         self.coarsest = 0.0, 0.0
 
@@ -154,26 +153,24 @@ class _Run:
         clock[k.TIME] = self.motion.breaks[0]
         clock[k.FRAME] = self.controls.open_frame
         clock[k.FORCE_SCALE] = 0.2 * np.pi * self.contact.tip.radius * work
-        row = self.records[1]
-        row[:] = 0.0
+        row = np.zeros(k.RECORD_WIDTH)
         self._settle(row)
         self._keep(row[None], self.fields[k.DEFORMATION][None])
 
-    def _settle(self, row) -> float:
-        """Equilibrate at frozen memory, note the state in ``row`` and return its energy, J."""
+    def _settle(self, row):
+        """Equilibrate at frozen memory and note the state in ``row`` of the records."""
         k, mesh, clock = self.kernel, self.mesh, self.clock
         height, profile, law, potential = self.functions
         n, frame = mesh.nodes.size, clock[k.FRAME]
         tip, pressure, scratch = np.empty(n), np.empty(n), np.empty(n)
         profile(frame * mesh.nodes, self.parameters.tip, tip, n)
         h0 = height(clock[k.TIME], self.parameters.height)
-        u = self.fields[k.DEFORMATION]
-        instantaneous, *modes = self.parameters.compliance
-        v = -np.array(modes) @ self.fields[k.MEMORY :] if modes else np.zeros(n)
-        energy = np.empty(2)
+        u, memory = self.fields[k.DEFORMATION], self.fields[k.MEMORY :]
+        instantaneous, modes = self.parameters.compliance[0], self.parameters.compliance[1:]
+        v = -modes @ memory
         iterations = k.settle(
             u, v, frame * instantaneous, h0 + tip, mesh, law, potential, self.parameters.law,
-            self.controls.newton, energy,
+            self.controls.newton,
         )  # fmt: skip
         if iterations < 0:
             raise DivergedError(f"no stable surface at tip height {h0:g} m", self.history(0.0))
@@ -183,46 +180,92 @@ class _Run:
         force = k.tip_force(
             pressure, gap, mesh, frame, tip[-1], potential, self.parameters.law, scratch
         )
+        edge = frame * k.radius_of_gap(gap, mesh.nodes, self.controls.gap_of_tension)
+        zone = frame * k.radius_of_gap(gap, mesh.nodes, 2 * self.controls.gap_of_tension) - edge
+        lag = self.fields[k.LOAD] - memory
+        rates = modes / self.parameters.retardation
         clock[k.FRAME_EARLIER] = clock[k.FRAME_EARLIEST] = frame
-        clock[k.EDGE] = frame * k.radius_of_gap(gap, mesh.nodes, self.controls.gap_of_tension)
-        zone = frame * k.radius_of_gap(gap, mesh.nodes, 2 * self.controls.gap_of_tension)
-        coarseness = frame * mesh.edge_spacing / (zone - clock[k.EDGE]) if clock[k.EDGE] else 0.0
-        clock[k.AXIS_GAP], clock[k.FORCE], clock[k.HISTORY] = gap[0], force, 1
+        clock[k.EDGE], clock[k.AXIS_GAP], clock[k.FORCE] = edge, gap[0], force
         clock[k.FORCE_SCALE] = max(clock[k.FORCE_SCALE], abs(force))
+        clock[k.HISTORY] = 1
         row[k.R_TIME], row[k.R_HEIGHT], row[k.R_FORCE] = clock[k.TIME], h0, force
-        row[k.R_EDGE], row[k.R_AXIS], row[k.R_FRAME] = clock[k.EDGE], u[0], frame
-        row[k.R_COARSENESS] = coarseness
-        return 2 * np.pi * frame**2 * energy[1] + self._energy_beyond(frame, h0)
+        row[k.R_EDGE], row[k.R_AXIS], row[k.R_FRAME] = edge, u[0], frame
+        row[k.R_LOSS] = 2 * np.pi * frame * np.sum(rates * np.sum((lag @ mesh.stiffness) * lag, 1))
+        row[k.R_COARSENESS] = frame * mesh.edge_spacing / zone if edge else 0.0
 
-    def _energy_beyond(self, frame, h0) -> float:
-        """Interaction energy of the flat surface outside the mesh, J."""
-        end = frame * self.mesh.nodes[-1]
+    def _energy(self) -> float:
+        """Energy of the instantaneous elastic contact, to infinity, J."""
+        k, mesh = self.kernel, self.mesh
+        frame = self.clock[k.FRAME]
+        h0 = self.functions[0](self.time, self.parameters.height)
+        load = self.fields[k.LOAD]
+        elastic = np.pi * frame * self.parameters.compliance[0] * (load @ mesh.stiffness @ load)
+
+        def density(radius, deformation):
+            gap = h0 + self.contact.tip.profile(radius) - deformation
+            return self.contact.surface.potential(gap)
+
+        near = frame**2 * mesh.masses @ density(frame * mesh.nodes, self.fields[k.DEFORMATION])
+        end = frame * mesh.nodes[-1]
         r = 2 * end / (1 + _POINTS)
-        density = self.contact.surface.potential(h0 + self.contact.tip.profile(r))
-        return 2 * np.pi * float(np.sum(_WEIGHTS * density * r**3 / (2 * end)))
+        beyond = np.sum(_WEIGHTS * density(r, 0.0) * r**3 / (2 * end))
+        return float(elastic + 2 * np.pi * (near + beyond))
 
-    def _land(self, row):
-        """End a fall: let the mesh follow to where the edge has gone, and note the energy released.
+    def fall(self):
+        """Pass the shortest step where no stable shape is near, and note a jump if it is one.
 
-        The shape that the surface fell to was found on the mesh it fell from, which may be far too
-        coarse or too small there.
+        The instantaneous compliance is given a retardation time of its own, far below the step,
+        but for a share too stiff to be unstable. The fall is then a fast creep, which the same
+        steps follow on the same riding mesh, down to the shape that is stable without that aid.
         """
-        k = self.kernel
-        before = row[k.R_JUMP] + self._energy_beyond(row[k.R_FRAME], row[k.R_HEIGHT])
-        after = self._settle(row)
-        for _ in range(50):
-            edge = self.clock[k.EDGE]
-            stretch = k.frame_for(edge, self.controls.open_frame) / self.clock[k.FRAME]
-            level = self._level_for(stretch * row[k.R_COARSENESS])
-            if level == self.level and abs(stretch - 1) < self.mesh.edge_spacing:
+        from softafm.kernels import still
+
+        k, clock = self.kernel, self.clock
+        start, gap, edge, before = self.time, clock[k.AXIS_GAP], clock[k.EDGE], self._energy()
+        duration = self.controls.shortest_step
+        stiff = min(0.2, (0.4 / self.contact.tabor_instantaneous) ** 1.5)
+        functions, parameters, controls = self.functions, self.parameters, self.controls
+        h0 = functions[0](start + duration, parameters.height)
+        instantaneous, modes = parameters.compliance[0], parameters.compliance[1:]
+        delayed = (1 - stiff) * instantaneous
+        self.functions = (still, *functions[1:])
+        self.fields = np.vstack([self.fields, self.fields[k.LOAD]])
+        compliance = np.concatenate([[stiff * instantaneous], modes, [delayed]])
+        for patience in range(8):
+            creep_time = 10.0 ** (-4 - patience) * duration
+            self.parameters = parameters._replace(
+                height=np.array([h0]),
+                compliance=compliance,
+                retardation=np.append(parameters.retardation, creep_time),
+            )
+            self.controls = controls._replace(
+                shortest_step=1e-9 * creep_time, longest_step=duration, top_speed=1e-300,
+                prediction=0.2, memory=0.2, force=1.0,
+            )  # fmt: skip
+            clock[k.TIME], clock[k.STEP], clock[k.HISTORY] = 0.0, 1e-3 * creep_time, 1
+            outcome = k.FULL
+            while outcome in (k.FULL, k.REMESH):
+                outcome, records, _ = self._call(duration)
+                if outcome == k.REMESH:
+                    self._remesh(records)
+            lag = delayed * np.abs(self.fields[k.LOAD] - self.fields[-1]).max()
+            if outcome != k.FINISHED or lag < 1e-4 * self.controls.gap_of_tension:
                 break
-            self._move_to(level, stretch)
-            after = self._settle(row)
-        row[k.R_JUMP] = before - after
+        self.functions, self.parameters, self.controls = functions, parameters, controls
+        self.fields = self.fields[:-1].copy()
+        clock[k.TIME], clock[k.STEP] = start + duration, 10 * duration
+        row = np.zeros(k.RECORD_WIDTH)
+        self._settle(row)
+        if abs(clock[k.AXIS_GAP] - gap) > 0.1 * gap or abs(clock[k.EDGE] - edge) > 0.05 * edge:
+            row[k.R_JUMP] = before - self._energy()
+        else:
+            # No fall but a slip: the edge is caught by nodes too far apart for a contact so slack.
+            self.target = max(self.target / 2, 0.02)
+        self._keep(row[None], self.fields[k.DEFORMATION][None])
 
     def most_per_step(self, seconds):
         """Let no step be longer, however little happens: smooth curves need points."""
-        self.falls = 0
+        self.target = 0.2 * self.strictness**0.2
         longest = seconds * self.strictness**0.25
         self.controls = self.controls._replace(longest_step=longest)
 
@@ -236,6 +279,23 @@ class _Run:
     def advance(self, stop) -> bool:
         """Run the compiled loop once; True if it reached ``stop``."""
         k = self.kernel
+        outcome, records, shapes = self._call(stop)
+        self._keep(records, shapes)
+        if outcome == k.STUCK:
+            raise DivergedError(
+                f"stopped at t = {self.time:g} s after {self.clock[k.TRIES]:.0f} attempted steps "
+                f"(most_steps = {self.solver.most_steps})",
+                self.history(0.0),
+            )
+        if outcome == k.REMESH:
+            self._remesh(records)
+        if outcome == k.FALL:
+            self.fall()
+        return outcome == k.FINISHED
+
+    def _call(self, stop):
+        """Call the compiled loop once; return its outcome, records and shapes."""
+        k = self.kernel
         controls = self.controls._replace(
             end=float(stop),
             finest=0.35 * self.target if self.level > 0 else 0.0,
@@ -247,26 +307,11 @@ class _Run:
             self.fields, self.clock, self.records, shapes,
         )  # fmt: skip
         count = int(self.records[0, 0])
-        if outcome == k.FALL:
-            self._keep(self.records[1 : count - 1], shapes[1 : count - 1])
-            landing = self.records[count - 1]
-            self._land(landing)
-            self.falls += 1
-            if self.falls > 2:
-                # Surfaces fall once or twice; many small falls are the edge caught by the nodes.
-                self.target, self.falls = max(self.target / 2, 0.01), 0
-            self._keep(landing[None], self.fields[k.DEFORMATION][None])
-        else:
-            self._keep(self.records[1:count], shapes[1:count])
-        if outcome == k.STUCK:
-            raise DivergedError(
-                f"stopped at t = {self.time:g} s after {self.clock[k.TRIES]:.0f} attempted steps "
-                f"(most_steps = {self.solver.most_steps}) without a stable surface in reach",
-                self.history(0.0),
-            )
-        if outcome == k.REMESH:
-            self._move_to(self._level_for(self.records[count - 1, k.R_COARSENESS]), 1.0)
-        return outcome == k.FINISHED
+        return outcome, self.records[1:count], shapes[1:count]
+
+    def _remesh(self, records):
+        """Change to the mesh that suits the cohesive zone of the last record."""
+        self._move_to(self._level_for(records[-1, self.kernel.R_COARSENESS]), 1.0)
 
     def _keep(self, records, shapes):
         k = self.kernel

@@ -43,7 +43,7 @@ HISTORY, TRIES, NEWTONS = range(14, 17)
 CLOCK_SIZE = 17
 
 # Columns of a record. COARSENESS is the node spacing at the edge over the width of the cohesive
-# zone; JUMP the energy Π before the step if it was an elastic jump, else 0.
+# zone; JUMP the energy released if an elastic jump led there, else 0.
 R_TIME, R_HEIGHT, R_FORCE, R_EDGE, R_AXIS, R_LOSS, R_COARSENESS, R_FRAME, R_JUMP = range(9)
 RECORD_WIDTH = 9
 
@@ -212,16 +212,16 @@ def equilibrate(u, v, ac, standoff, mesh, law, parameters, smallest_gap, accurac
 
 
 @njit(
-    int64(_V, _V, float64, _V, MESH, pointer(PRESSURE), pointer(POTENTIAL), _V, float64, _V),
+    int64(_V, _V, float64, _V, MESH, pointer(PRESSURE), pointer(POTENTIAL), _V, float64),
     cache=True,
     fastmath=_FAST,
 )
-def settle(u, v, ac, standoff, mesh, law, potential, parameters, accuracy, energy):
+def settle(u, v, ac, standoff, mesh, law, potential, parameters, accuracy):
     """Descend from ``u``, in place, to a stable shape of u = v − c K p(standoff − u).
 
     Newton's method on Π, its Hessian shifted until it is positive and no gap changes by more than
-    40 %, each step shortened until Π falls. ``energy`` receives Π/(2πa²) before and after. Returns
-    the number of iterations, or -1 if 2000 do not suffice.
+    40 %, each step shortened until Π falls. Returns the number of iterations, or -1 if 10 000 do
+    not suffice.
     """
     n = u.size
     hessian = np.empty((n, n))
@@ -229,7 +229,7 @@ def settle(u, v, ac, standoff, mesh, law, potential, parameters, accuracy, energ
     change, gradient, trial, strain = np.empty(n), np.empty(n), np.empty(n), np.empty(n)
     scale = 1.0 / ac
     shift = 0.0
-    for iteration in range(1, 2001):
+    for iteration in range(1, 10001):
         for i in range(n):
             gap[i] = standoff[i] - u[i]
             trial[i] = u[i] - v[i]
@@ -241,9 +241,6 @@ def settle(u, v, ac, standoff, mesh, law, potential, parameters, accuracy, energ
             value += 0.5 * trial[i] * strain[i] * scale + mesh.masses[i] * density[i]
             gradient[i] = strain[i] * scale + mesh.masses[i] * pressure[i]
             steepest = max(steepest, abs(slope[i]))
-        if iteration == 1:
-            energy[0] = value
-        energy[1] = value
         while True:
             for i in range(n):
                 change[i] = -gradient[i]
@@ -300,12 +297,17 @@ def tip_force(pressure, gap, mesh, frame, tip_end, potential, parameters, scratc
     return 2.0 * pi * frame * frame * (total + end * end / (2.0 * tip_end) * scratch[0])
 
 
-@njit((float64, float64, int64, _V, _M), cache=True)
-def memory_weights(step, last, order, retardation, weights):
+@njit((float64, float64, int64, _V, _V, _M), cache=True)
+def memory_weights(step, last, order, compliance, retardation, weights):
     """Weights of y⁺ = decay·y + earlier·q₋ + now·q + new·q⁺ over a step, one row per mode.
 
-    Exact for q linear in time, or with ``order`` 2 quadratic through the instant ``last`` before.
-    With k = step/τ: moments M_j = ∫₀¹ k e^(−k(1−s)) s^j ds; curvature = M_2 − M_1.
+    Exact for q linear in time, or with ``order`` 2, quadratic through the instant ``last`` before.
+    With k = step/τ: moments M_j = ∫₀¹ k e^(−k(1−s)) s^j ds; the quadratic adds M_2 − M_1 times the
+    second difference of q. In a contact held rigidly q itself relaxes, in τ J_g/(J_g + J_m). Over
+    steps longer than a few such times the quadratic formula, like Adams and Moulton's, would grow
+    without bound: there the linear one serves, or where that would ring, one with −3/2 of the
+    quadratic's correction, which is of second order too. ``curvature`` is the error allowed for per
+    second difference of q: for the quadratic formula that of the linear one, else twice theirs.
     """
     for m in range(retardation.size):
         k = step / retardation[m]
@@ -318,13 +320,20 @@ def memory_weights(step, last, order, retardation, weights):
             m1 = 1.0 - m0 / k
             m2 = 1.0 - 2.0 * m1 / k
         row = weights[m]
+        bend = m2 - m1
         row[_DECAY], row[_EARLIER], row[_NOW], row[_NEW] = 1.0 - m0, 0.0, m0 - m1, m1
-        row[_CURVATURE] = m2 - m1
+        row[_CURVATURE] = bend
         if order == 2:
             ratio = last / step
-            row[_EARLIER] += row[_CURVATURE] / (ratio * (1.0 + ratio))
-            row[_NOW] -= row[_CURVATURE] / ratio
-            row[_NEW] += row[_CURVATURE] / (1.0 + ratio)
+            lag = compliance[m + 1] / compliance[0]
+            if k * (1.0 + lag) > 4.5:
+                ringing = abs(row[_DECAY] - row[_NOW] * lag) / (1.0 + row[_NEW] * lag)
+                damping = 1.5 if ringing > 0.7 else 0.0
+                row[_CURVATURE] = 2.0 * (1.0 + damping) * bend
+                bend *= -damping
+            row[_EARLIER] += bend / (ratio * (1.0 + ratio))
+            row[_NOW] -= bend / ratio
+            row[_NEW] += bend / (1.0 + ratio)
 
 
 @njit((int64, float64, float64, float64, _V), cache=True)
@@ -352,7 +361,7 @@ def following_frame(step, clock, mesh, controls):
     """Frame radius for the next step, which rides along with the edge.
 
     It moves as far as the edge will, and makes up for what it lags while the edge passes the
-    nodes; it stands still when the edge does, so that short steps see the same mesh.
+    nodes; it stands still while the edge hardly moves, so that short steps see the same mesh.
     """
     frame, edge = clock[FRAME], clock[EDGE]
     if clock[HISTORY] < 2:
@@ -360,7 +369,10 @@ def following_frame(step, clock, mesh, controls):
     ahead = (edge - clock[EDGE_EARLIER]) * step / clock[LAST]
     ahead = min(max(ahead, -0.2 * edge), 0.2 * edge)
     suited = frame_for(edge, controls.open_frame)
-    pace = min(1.0, abs(ahead) / (controls.slack * mesh.edge_spacing * frame))
+    node = mesh.edge_spacing * frame
+    if abs(ahead) < 0.2 * node and abs(suited - frame) < controls.slack * node:
+        return frame
+    pace = min(1.0, abs(ahead) / (controls.slack * node))
     ridden = frame + frame_for(edge + ahead, controls.open_frame) - suited
     return max(ridden + pace * (suited - frame), 0.5 * frame)
 
@@ -406,7 +418,8 @@ def _move_clock(clock, step, frame, edge, force):
 def advance(
     height, profile, law, potential, parameters, mesh, controls, fields, clock, records, shapes
 ):
-    """Step the surface in time until ``controls.end``, full records, a need to remesh or a fall.
+    """Step the surface in time until ``controls.end``, full records, a need to remesh, or FALL: no
+    stable shape within the shortest step, which is not taken.
 
     ``fields`` (MEMORY + modes, n) and ``clock`` hold the state and are updated. Every accepted step
     fills a row of ``records``, from row 1 on, and of ``shapes`` (the deformation) if that has rows;
@@ -424,7 +437,6 @@ def advance(
     memory = np.empty((modes, n))
     remember = np.empty((modes, 5))
     weights = np.empty(3)
-    energy = np.empty(2)
     count = 1
     outcome = FULL
 
@@ -455,7 +467,7 @@ def advance(
             reframe(fields[LOAD_EARLIER], mesh, frame / clock[FRAME_EARLIER], load_earlier)
         else:
             load_earlier[:] = 0.0
-        memory_weights(step, clock[LAST], order, retardation, remember)
+        memory_weights(step, clock[LAST], order, compliance, retardation, remember)
 
         # The step is an elastic contact of compliance c on a surface displaced by v.
         c = compliance[0]
@@ -485,57 +497,37 @@ def advance(
         )  # fmt: skip
         clock[NEWTONS] += abs(iterations)
 
-        jump = 0.0
         if iterations < 0:
-            if step > controls.shortest_step:
-                clock[STEP] = max(0.2 * step, 0.999 * controls.shortest_step)
-                continue
-            # No stable shape nearby, however short the step: fall to the next one.
-            reframe(fields[DEFORMATION], mesh, stretch, u)
-            guess[:] = u
-            iterations = settle(
-                u, v, frame * c, standoff, mesh, law, potential, parameters.law,
-                controls.newton, energy,
-            )  # fmt: skip
-            clock[NEWTONS] += abs(iterations)
-            if iterations < 0:
-                outcome = STUCK
+            if step <= controls.shortest_step:
+                outcome = FALL
                 break
-            moved = 0.0
-            for i in range(n):
-                gap[i] = standoff[i] - u[i]
-                moved = max(moved, abs(u[i] - guess[i]) / gap[i])
-            law(gap, parameters.law, pressure, scratch, n)
-            if moved > 0.1:
-                jump = 2.0 * pi * frame * frame * energy[0]
-            history = 0
+            clock[STEP] = max(0.2 * step, 0.999 * controls.shortest_step)
+            continue
 
         for i in range(n):
             load_new[i] = (v[i] - u[i]) / c
         force = tip_force(pressure, gap, mesh, frame, tip[n - 1], potential, parameters.law, scratch)
 
-        growth = 1.0
-        if history > 0:
-            error = 0.0
+        error = 0.0
+        for i in range(n):
+            error = max(error, abs(u[i] - guess[i]) / (controls.prediction * gap[i]))
+        if order == 2:
+            ratio = clock[LAST] / step
+            curvature = 0.0
+            for m in range(modes):
+                curvature += compliance[m + 1] * remember[m, _CURVATURE]
             for i in range(n):
-                error = max(error, abs(u[i] - guess[i]) / (controls.prediction * gap[i]))
-            if order == 2:
-                ratio = clock[LAST] / step
-                curvature = 0.0
-                for m in range(modes):
-                    curvature += compliance[m + 1] * remember[m, _CURVATURE]
-                for i in range(n):
-                    bend = (load_new[i] + load_earlier[i] / ratio) / (1.0 + ratio) - load[i] / ratio
-                    error = max(error, abs(curvature * bend) / (controls.memory * gap[i]))
-            foreseen = 0.0
-            for k in range(history):
-                foreseen += weights[k] * clock[FORCE + k]
-            scale = max(clock[FORCE_SCALE], abs(force))
-            error = max(error, abs(force - foreseen) / (controls.force * scale))
-            growth = 0.85 * max(error, 1e-6) ** (-1.0 / history)
-            if error > 1.5 and step > controls.shortest_step:
-                clock[STEP] = max(step * max(0.25, growth), 0.999 * controls.shortest_step)
-                continue
+                bend = (load_new[i] + load_earlier[i] / ratio) / (1.0 + ratio) - load[i] / ratio
+                error = max(error, abs(curvature * bend) / (controls.memory * gap[i]))
+        foreseen = 0.0
+        for k in range(history):
+            foreseen += weights[k] * clock[FORCE + k]
+        scale = max(clock[FORCE_SCALE], abs(force))
+        error = max(error, abs(force - foreseen) / (controls.force * scale))
+        growth = 0.85 * max(error, 1e-6) ** (-1.0 / history)
+        if error > 1.5 and step > controls.shortest_step:
+            clock[STEP] = max(step * max(0.25, growth), 0.999 * controls.shortest_step)
+            continue
 
         # Accept the step.
         loss = 0.0
@@ -570,14 +562,11 @@ def advance(
         row = records[count]
         row[R_TIME], row[R_HEIGHT], row[R_FORCE], row[R_EDGE] = clock[TIME], h0, force, edge
         row[R_AXIS], row[R_LOSS], row[R_COARSENESS] = u[0], loss, coarseness
-        row[R_FRAME], row[R_JUMP] = frame, jump
+        row[R_FRAME], row[R_JUMP] = frame, 0.0
         if shapes.shape[0] > count:
             for i in range(n):
                 shapes[count, i] = u[i]
         count += 1
-        if jump != 0.0:
-            outcome = FALL
-            break
         if edge > 0.0 and not controls.finest <= coarseness <= controls.coarsest:
             outcome = REMESH
             break
