@@ -4,16 +4,14 @@ They are first-class typed functions over whole arrays: a solver compiled once s
 and motion, from the on-disk cache, at the speed of inlined code.
 """
 
-import sys
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
-from threading import Timer
+from collections.abc import Callable
 from typing import Any
 
 from numba import float64, int64, njit, types, void
 from numba.experimental.function_type import _get_wrapper_address
 
 _ARRAY = float64[::1]
+_FAST = {"reassoc", "contract", "nsz", "arcp"}
 
 PRESSURE = void(_ARRAY, _ARRAY, _ARRAY, _ARRAY, int64)
 """``(gap, parameters, pressure, slope, n)``: p and dp/dh of the first n gaps, in Pa and Pa/m."""
@@ -35,9 +33,7 @@ class CompiledFunction(types.WrapperAddressProtocol):
     """
 
     def __init__(self, function: Callable, signature: Any):
-        self._function = njit(signature, cache=True, fastmath={"reassoc", "contract", "nsz", "arcp"})(
-            function
-        )
+        self._function = njit(signature, cache=True, fastmath=_FAST)(function)
         self._signature = signature
         self._address = _get_wrapper_address(self._function, signature)
         self.__doc__ = function.__doc__
@@ -61,23 +57,3 @@ def pointer(signature: Any) -> types.FunctionType:
 def compiled(signature: Any) -> Callable[[Callable], CompiledFunction]:
     """Decorate a function: compile it for ``signature`` now, or load it from the disk cache."""
     return lambda function: CompiledFunction(function, signature)
-
-
-@contextmanager
-def announced_compilation(patience: float = 2.0) -> Iterator[None]:
-    """Tell the user, on stderr, if what happens inside takes longer than ``patience`` seconds.
-
-    Loading compiled code takes under a second; only a machine's first run waits for the compiler.
-    """
-    notice = Timer(
-        patience,
-        print,
-        ["softafm: compiling for this machine, first use only (about 15 s) ..."],
-        {"file": sys.stderr, "flush": True},
-    )
-    notice.daemon = True
-    notice.start()
-    try:
-        yield
-    finally:
-        notice.cancel()

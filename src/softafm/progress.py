@@ -16,7 +16,8 @@ def reporting(progress: bool | Progress | None) -> Iterator[Progress | None]:
     if progress is not True:
         yield progress or None
         return
-    started, shown = perf_counter(), []
+    started = perf_counter()
+    shown: list[tuple[Bar, TaskID]] = []
 
     def report(fraction: float, message: str) -> None:
         if not shown:

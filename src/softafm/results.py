@@ -6,12 +6,15 @@ import tempfile
 from dataclasses import fields, is_dataclass
 from datetime import UTC, datetime
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
-import xarray as xr
 
 import softafm
 from softafm.solvers.history import History
+
+if TYPE_CHECKING:
+    from xarray import Dataset, Variable
 
 # name: (unit, long name)
 VARIABLES = {
@@ -43,10 +46,12 @@ VARIABLES = {
 _FORMAT = "softafm result 1"
 
 
-def variable(name: str, dims, values) -> xr.Variable:
+def variable(name: str, dims, values) -> "Variable":
     """Return values under a known name, with its unit and long name as attributes."""
+    from xarray import Variable
+
     units, long_name = VARIABLES[name]
-    return xr.Variable(dims, np.asarray(values, float), {"units": units, "long_name": long_name})
+    return Variable(dims, np.asarray(values, float), {"units": units, "long_name": long_name})
 
 
 def describe(thing) -> dict:
@@ -66,8 +71,10 @@ def dataset(
     tolerance: float,
     history: History,
     observables: dict[str, tuple],
-) -> xr.Dataset:
+) -> "Dataset":
     """Assemble a result: the history, the mode's observables (dims, values) and the provenance."""
+    from xarray import Dataset
+
     curves = ("tip_height", "force", "contact_radius", "axis_deformation", "viscous_power")
     data = {name: variable(name, "time", getattr(history, name)) for name in curves}
     for name in ("jump_time", "jump_energy"):
@@ -103,10 +110,10 @@ def dataset(
         "warnings": "\n".join(history.warnings),
         **{f"solver_{name}": value for name, value in history.diagnostics.items()},
     }
-    return xr.Dataset(data, coordinates, attributes)
+    return Dataset(data, coordinates, attributes)
 
 
-def save(result: xr.Dataset, path, *, overwrite: bool = False) -> None:
+def save(result: "Dataset", path, *, overwrite: bool = False) -> None:
     """Write a result to a NetCDF-4 file; an existing file is replaced only with ``overwrite``.
 
     The file appears whole or not at all.
@@ -121,7 +128,7 @@ def save(result: xr.Dataset, path, *, overwrite: bool = False) -> None:
     _write(path, overwrite, lambda part: result.to_netcdf(part, engine="h5netcdf"))
 
 
-def load(path) -> xr.Dataset:
+def load(path) -> "Dataset":
     """Read a result written by ``save``, whole, and close the file.
 
     Raises
@@ -131,10 +138,12 @@ def load(path) -> xr.Dataset:
     ValueError
         If it is not a result of softafm.
     """
+    from xarray import load_dataset
+
     if not Path(path).is_file():
         raise FileNotFoundError(f"{path}: no such file")
     try:
-        result = xr.load_dataset(path, engine="h5netcdf")
+        result = load_dataset(path, engine="h5netcdf")
     except Exception as problem:
         raise ValueError(f"{path}: not a readable NetCDF file ({problem})") from None
     if result.attrs.get("format") != _FORMAT:
@@ -142,7 +151,7 @@ def load(path) -> xr.Dataset:
     return result
 
 
-def export(result: xr.Dataset, path, *, overwrite: bool = False) -> None:
+def export(result: "Dataset", path, *, overwrite: bool = False) -> None:
     """Write the curves over time to CSV, or the whole result to HDF5, by the path's suffix.
 
     CSV columns are named ``name (unit)``; the scalars stand above them as comments.
@@ -169,9 +178,10 @@ def _write_csv(result, path):
     header = [f"{v.name} = {float(v):.9g} {v.units}" for v in scalars]
     header += [f"experiment = {result.attrs['experiment']}"]
     names = ",".join(f"{v.name} ({v.units})" for v in curves)
+    rows = np.column_stack(curves)
     with open(path, "w", encoding="utf-8") as out:
         out.writelines(f"# {line}\n" for line in header)
-        np.savetxt(out, np.column_stack(curves), fmt="%.9g", delimiter=",", header=names, comments="")
+        np.savetxt(out, rows, fmt="%.9g", delimiter=",", header=names, comments="")
 
 
 def _write(path, overwrite, write):

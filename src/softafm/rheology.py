@@ -10,7 +10,7 @@ from typing import ClassVar, NamedTuple
 
 import numpy as np
 
-from softafm._validate import finite, poisson_ratio, positive
+from softafm._validate import poisson_ratio, positive
 
 
 class ReducedCompliance(NamedTuple):
@@ -39,7 +39,10 @@ class ReducedCompliance(NamedTuple):
 class _Solid:
     """What every sample derives from its reduced compliance."""
 
-    reduced_compliance: ReducedCompliance
+    @property
+    def reduced_compliance(self) -> ReducedCompliance:
+        """Creep compliance of a half-space of this solid, 1/Pa and s."""
+        raise NotImplementedError
 
     @property
     def reduced_modulus_instantaneous(self) -> float:

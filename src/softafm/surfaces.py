@@ -1,8 +1,8 @@
 """Laws of the pressure between two surfaces against the gap that separates them."""
 
 from dataclasses import dataclass
-from typing import ClassVar
 from math import pi
+from typing import ClassVar
 
 import numpy as np
 

@@ -1,18 +1,19 @@
 """Pressure to displacement on an elastic half-space (axisymmetric Boussinesq).
 
 (K p)(r) = ∫ p(s) k(r, s) s ds with k(r, s) = 4/(π r_>) K_ell((r_</r_>)²), Rajabifar et al. 2021,
-equation (12). The kernel is logarithmic at r = s. On nodes s_j = s(j) of a smooth map the trapezoidal
-rule keeps its order when the singular term is replaced by its zeta-regularised value (Kress 1999;
-Wu and Martinsson 2021): near r = s, k → (2/πr) ln(8r/|r − s|), and ∫ln|x| f dx is
+equation (12). The kernel is logarithmic at r = s. On nodes s_j = s(j) of a smooth map the
+trapezoidal rule keeps its order when the singular term is replaced by its zeta-regularised value
+(Kress 1999; Wu and Martinsson 2021): near r = s, k → (2/πr) ln(8r/|r − s|), and ∫ln|x| f dx is
 h Σ' ln|x_j| f_j + h ln(h/2π) f_0 up to O(h³).
 """
 
 import numpy as np
-from scipy.special import ellipkm1, i0e
 
 
 def kernel(r, s):
     """k(r, s) of two arrays of unequal positive radii, in 1/(their unit)."""
+    from scipy.special import ellipkm1
+
     larger, smaller = np.maximum(r, s), np.minimum(r, s)
     complement = (larger - smaller) * (larger + smaller) / larger**2
     return 4 / (np.pi * larger) * ellipkm1(complement)
@@ -45,6 +46,8 @@ def _correct_near_axis(matrix, nodes, masses):
     error is local and the same for every smooth pressure, so one closed form settles it:
     p = exp(−r²/b²) gives K p = √π b exp(−x) I0(x), x = r²/2b².
     """
+    from scipy.special import i0e
+
     width = 1.0
     pressure = np.exp(-((nodes / width) ** 2))
     exact = width * np.sqrt(np.pi) * i0e((nodes / width) ** 2 / 2)

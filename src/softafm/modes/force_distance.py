@@ -1,7 +1,8 @@
 """Force-distance curves: the tip height is prescribed."""
 
+from typing import TYPE_CHECKING
+
 import numpy as np
-import xarray as xr
 
 from softafm._validate import tolerance_of
 from softafm.contact import Contact
@@ -10,6 +11,9 @@ from softafm.motions import Sine, Trajectory, Triangle
 from softafm.progress import Progress, reporting
 from softafm.results import dataset
 from softafm.solvers.energy import Energy
+
+if TYPE_CHECKING:
+    from xarray import Dataset
 
 
 def force_distance(
@@ -20,7 +24,7 @@ def force_distance(
     tolerance: float = 1e-2,
     profiles: bool = False,
     progress: bool | Progress | None = None,
-) -> xr.Dataset:
+) -> "Dataset":
     """Force on a tip that is moved through ``motion`` above a surface flat and relaxed at first.
 
     Parameters

@@ -1,7 +1,9 @@
 """Tapping: the tip oscillates with given amplitude about a given mean height."""
 
+from itertools import pairwise
+from typing import TYPE_CHECKING
+
 import numpy as np
-import xarray as xr
 
 from softafm._validate import tolerance_of
 from softafm.contact import Contact
@@ -10,6 +12,9 @@ from softafm.motions import Sine
 from softafm.progress import Progress, reporting
 from softafm.results import dataset
 from softafm.solvers.energy import Energy
+
+if TYPE_CHECKING:
+    from xarray import Dataset
 
 
 def tapping_cycle(
@@ -23,7 +28,7 @@ def tapping_cycle(
     tolerance: float = 1e-2,
     profiles: bool = False,
     progress: bool | Progress | None = None,
-) -> xr.Dataset:
+) -> "Dataset":
     """Cycles of h0 = mean_height + amplitude·cos(2πft) from the top, the surface flat at first.
 
     Parameters
@@ -69,10 +74,7 @@ def tapping_cycle(
 
     def each_cycle(weight):
         return np.array(
-            [
-                history.integrate(history.force, weight, a, b)
-                for a, b in zip(tops, tops[1:], strict=False)
-            ]
+            [history.integrate(history.force, weight, a, b) for a, b in pairwise(tops)]
         )
 
     virial = each_cycle(lambda t: motion.height(t) - motion.mean_height) / period

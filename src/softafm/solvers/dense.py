@@ -1,6 +1,7 @@
 """Small dense symmetric systems for compiled loops: factorise, solve, multiply.
 
-Written out by hand, as calls to LAPACK cost more than the work at the 25 to 80 unknowns of a contact.
+Written out by hand, as calls to LAPACK cost more than the work at the 25 to 80 unknowns of a
+contact.
 """
 
 from math import sqrt

@@ -307,7 +307,7 @@ def memory_weights(step, last, order, compliance, retardation, weights):
     steps longer than a few such times the quadratic formula, like Adams and Moulton's, would grow
     without bound: there the linear one serves, or where that would ring, one with −3/2 of the
     quadratic's correction, which is of second order too. ``curvature`` is the error allowed for per
-    second difference of q: for the quadratic formula that of the linear one, else twice theirs.
+    second difference of q: for the quadratic formula that of the linear one, else thrice theirs.
     """
     for m in range(retardation.size):
         k = step / retardation[m]
@@ -329,7 +329,7 @@ def memory_weights(step, last, order, compliance, retardation, weights):
             if k * (1.0 + lag) > 4.5:
                 ringing = abs(row[_DECAY] - row[_NOW] * lag) / (1.0 + row[_NEW] * lag)
                 damping = 1.5 if ringing > 0.7 else 0.0
-                row[_CURVATURE] = 2.0 * (1.0 + damping) * bend
+                row[_CURVATURE] = 3.0 * (1.0 + damping) * bend
                 bend *= -damping
             row[_EARLIER] += bend / (ratio * (1.0 + ratio))
             row[_NOW] -= bend / ratio

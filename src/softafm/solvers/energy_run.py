@@ -1,0 +1,210 @@
+"""One run of the energy solver: from stop to stop, through falls, into a history."""
+
+from collections.abc import Iterator
+from math import sqrt
+
+import numpy as np
+
+from softafm.errors import DivergedError
+from softafm.kernels import still
+from softafm.solvers import energy_kernel as k
+from softafm.solvers.energy_surface import Surface
+from softafm.solvers.history import History
+from softafm.solvers.shapes import Shape, on_common_radii
+
+_CHUNK = 256
+
+
+class Run:
+    """Carries a surface through a motion and keeps what happens."""
+
+    def __init__(self, solver, contact, motion, tolerance: float, keep_shapes: bool):
+        self.solver, self.contact, self.motion = solver, contact, motion
+        self.strictness = tolerance / 1e-2
+        self.surface = Surface(contact, motion, self.strictness, solver.finest_spacing)
+        gap = self.surface.gap_of_tension
+        fastest = min([gap / motion.top_speed, *self.surface.parameters.retardation])
+        self.controls = k.Controls(
+            end=0.0,
+            shortest_step=1e-4 * self.strictness * fastest,
+            longest_step=0.0,
+            top_speed=motion.top_speed,
+            open_frame=self.surface.open_frame,
+            gap_of_tension=gap,
+            prediction=0.03 * self.strictness**0.7,
+            memory=0.01 * self.strictness,
+            force=0.01 * self.strictness,
+            newton=self.surface.accuracy,
+            slack=2.0,
+            finest=0.0,
+            coarsest=0.0,
+            most_tries=float(solver.most_steps),
+        )
+        self.target = self.surface.target
+        self.records = np.empty((_CHUNK, k.RECORD_WIDTH))
+        self.chunks: list[np.ndarray] = []
+        self.shapes: list[Shape] | None = [] if keep_shapes else None
+        self.coarsest = 0.0, 0.0
+
+    def steps(self) -> Iterator[float]:
+        """Run, yielding the fraction of the motion done at every return of the compiled loop."""
+        surface, motion = self.surface, self.motion
+        self._keep(surface.settle()[None], surface.fields[k.DEFORMATION][None])
+        stops = np.union1d(motion.breaks, motion.landmarks)
+        first, span = stops[0], stops[-1] - stops[0]
+        for start, stop in zip(stops[:-1], stops[1:], strict=True):
+            if start in motion.breaks:
+                self._begin_piece(stop)
+            surface.target = self.target
+            # However little happens, smooth curves need points.
+            longest = (stop - start) / 12 * self.strictness**0.25
+            self.controls = self.controls._replace(longest_step=longest)
+            outcome = k.FULL
+            while outcome != k.FINISHED:
+                outcome, records, shapes = self._advance(stop)
+                self._keep(records, shapes)
+                if outcome == k.STUCK:
+                    raise DivergedError(
+                        f"stopped at t = {surface.time:g} s after {surface.clock[k.TRIES]:.0f} "
+                        f"attempted steps (most_steps = {self.solver.most_steps})",
+                        self.history(0.0),
+                    )
+                if outcome == k.REMESH:
+                    surface.remesh(records[-1, k.R_COARSENESS])
+                if outcome == k.FALL:
+                    self._fall()
+                yield (surface.time - first) / span
+
+    def _begin_piece(self, stop):
+        """Forget the past shapes: beyond a break of the motion they do not extrapolate."""
+        clock = self.surface.clock
+        clock[k.HISTORY] = 1
+        clock[k.STEP] = 0.1 * clock[k.LAST] or 0.005 * (stop - self.surface.time)
+
+    def _advance(self, stop):
+        """Call the compiled loop once; return its outcome, records and shapes."""
+        surface = self.surface
+        finest, coarsest = surface.coarseness_allowed
+        controls = self.controls._replace(end=float(stop), finest=finest, coarsest=coarsest)
+        shapes = np.empty((0 if self.shapes is None else _CHUNK, surface.mesh.nodes.size))
+        outcome = k.advance(
+            *surface.functions, surface.parameters, surface.mesh, controls,
+            surface.fields, surface.clock, self.records, shapes,
+        )  # fmt: skip
+        count = int(self.records[0, 0])
+        return outcome, self.records[1:count], shapes[1:count]
+
+    def _fall(self):
+        """Pass the shortest step where no stable shape is near, and note a jump if it is one."""
+        surface, clock = self.surface, self.surface.clock
+        start, gap, edge = surface.time, clock[k.AXIS_GAP], clock[k.EDGE]
+        before, duration = surface.energy(), self.controls.shortest_step
+        self._creep_down(start + duration)
+        clock[k.TIME], clock[k.STEP] = start + duration, 10 * duration
+        record = surface.settle()
+        if abs(clock[k.AXIS_GAP] - gap) > 0.1 * gap or abs(clock[k.EDGE] - edge) > 0.05 * edge:
+            record[k.R_JUMP] = before - surface.energy()
+        else:
+            # No fall but a slip: the edge is caught by nodes too far apart for a contact so slack.
+            surface.target = max(surface.target / 2, 0.02)
+        self._keep(record[None], surface.fields[k.DEFORMATION][None])
+
+    def _creep_down(self, time):
+        """Follow a fall under the tip height of ``time`` by way of a fast fictitious creep.
+
+        The instantaneous compliance is given a retardation time of its own, far below the shortest
+        step, but for a share too stiff to be unstable. The fall is then smooth in that time, and
+        the same steps follow it on the same riding mesh to the shape that is stable without this
+        aid. A fall that starts slowly gets more of the fictitious time.
+        """
+        surface, clock, controls = self.surface, self.surface.clock, self.controls
+        functions, parameters = surface.functions, surface.parameters
+        instantaneous, modes = parameters.compliance[0], parameters.compliance[1:]
+        stiff = min(0.2, (0.4 / self.contact.tabor_instantaneous) ** 1.5) * instantaneous
+        delayed = instantaneous - stiff
+        duration = controls.shortest_step
+        surface.functions = (still, *functions[1:])
+        surface.fields = np.vstack([surface.fields, surface.fields[k.LOAD]])
+        for patience in range(8):
+            creep_time = 10.0 ** (-4 - patience) * duration
+            surface.parameters = parameters._replace(
+                height=np.array([functions[0](time, parameters.height)]),
+                compliance=np.concatenate([[stiff], modes, [delayed]]),
+                retardation=np.append(parameters.retardation, creep_time),
+            )
+            self.controls = controls._replace(
+                shortest_step=1e-9 * creep_time, longest_step=duration, top_speed=1e-300,
+                prediction=0.2, memory=0.2, force=1.0,
+            )  # fmt: skip
+            clock[k.TIME], clock[k.STEP], clock[k.HISTORY] = 0.0, 1e-3 * creep_time, 1
+            outcome = k.FULL
+            while outcome in (k.FULL, k.REMESH):
+                outcome, records, _ = self._advance(duration)
+                if outcome == k.REMESH:
+                    surface.remesh(records[-1, k.R_COARSENESS])
+            behind = delayed * np.abs(surface.fields[k.LOAD] - surface.fields[-1]).max()
+            if outcome != k.FINISHED or behind < 1e-4 * surface.gap_of_tension:
+                break
+        surface.functions, surface.parameters, self.controls = functions, parameters, controls
+        surface.fields = surface.fields[:-1].copy()
+
+    def _keep(self, records, shapes):
+        """Keep copies of records and shapes, and the worst coarseness of the finest mesh."""
+        surface = self.surface
+        self.chunks.append(records.copy())
+        if self.shapes is not None:
+            for record, shape in zip(records, shapes, strict=True):
+                self.shapes.append(Shape(record[k.R_FRAME], surface.mesh, shape.copy()))
+        if surface.level == surface.finest_level and len(records):
+            worst = records[records[:, k.R_COARSENESS].argmax()]
+            found = float(worst[k.R_COARSENESS]), float(worst[k.R_EDGE])
+            self.coarsest = max(self.coarsest, found)
+
+    def history(self, seconds: float) -> History:
+        """Collect what was recorded; ``seconds`` is the time the run took."""
+        surface = self.surface
+        records = np.concatenate(self.chunks)
+        time, jumped = records[:, k.R_TIME], records[:, k.R_JUMP] != 0
+        breaks = np.flatnonzero(np.isin(time, self.motion.breaks[1:-1]))
+        cuts = sorted([(i, i + 1) for i in breaks] + [(i, i) for i in np.flatnonzero(jumped)])
+        starts = [0] + [start for start, _ in cuts]
+        ends = [end for _, end in cuts] + [time.size]
+        return History(
+            time=time,
+            tip_height=records[:, k.R_HEIGHT],
+            force=records[:, k.R_FORCE],
+            contact_radius=records[:, k.R_EDGE],
+            axis_deformation=records[:, k.R_AXIS],
+            viscous_power=records[:, k.R_LOSS],
+            pieces=tuple(slice(int(a), int(b)) for a, b in zip(starts, ends, strict=True)),
+            jump_time=time[jumped],
+            jump_energy=records[jumped, k.R_JUMP],
+            profiles=None if self.shapes is None else on_common_radii(self.shapes),
+            diagnostics={
+                "steps": time.size - 1,
+                "attempted_steps": int(surface.clock[k.TRIES]),
+                "newton_iterations": int(surface.clock[k.NEWTONS]),
+                "meshes": surface.meshes,
+                "most_nodes": surface.most_nodes,
+                "finest_spacing": surface.finest_spacing,
+                "growth": surface.growth,
+                "wall_time": seconds,
+            },
+            warnings=self._warnings(),
+        )
+
+    def _warnings(self) -> tuple[str, ...]:
+        coarseness, edge = self.coarsest
+        if coarseness <= 1.3 * self.target:
+            return ()
+        spacing = self.surface.mesh.edge_spacing * edge
+        law = self.contact.surface
+        z0 = sqrt(coarseness / self.target) * law.equilibrium_gap
+        return (
+            f"the cohesive zone at the contact edge, {spacing / coarseness:.2g} m wide, is resolved "
+            f"by nodes {spacing:.2g} m apart (finest_spacing = {self.solver.finest_spacing:g} "
+            f"contact radii) where {self.target * spacing / coarseness:.2g} m is needed: forces and "
+            f"above all the loop energy may be wrong. Lower solvers.Energy(finest_spacing=...), or "
+            f"enlarge z0 at fixed work of adhesion, LennardJones.from_work_of_adhesion("
+            f"W={law.work_of_adhesion:.4g}, z0={z0:.2g})",
+        )

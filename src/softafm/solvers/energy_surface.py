@@ -1,0 +1,144 @@
+"""The surface of the energy solver between calls of its compiled loop: mesh, fields, clock."""
+
+from math import ceil, log2, sqrt
+
+import numpy as np
+
+from softafm.errors import DivergedError
+from softafm.halfspace.mesh import unit_mesh
+from softafm.solvers import energy_kernel as k
+
+EXTENT = 8.0
+"""Radius of every mesh, in contact radii."""
+
+_COARSEST_SPACING = 0.3
+_FIRST_LEVEL = 1
+_POINTS, _WEIGHTS = np.polynomial.legendre.leggauss(16)
+
+
+class Surface:
+    """A deformed surface on the mesh of the moment.
+
+    Meshes form levels, each with half the edge spacing of the one before. ``target`` is the edge
+    spacing aimed at, as a part of the width of the cohesive zone.
+    """
+
+    def __init__(self, contact, motion, strictness: float, finest_spacing: float):
+        self.contact = contact
+        compliance = contact.sample.reduced_compliance
+        height, height_parameters = motion.compiled_height
+        profile, tip_parameters = contact.tip.compiled_profile
+        law, potential, law_parameters = contact.surface.compiled_pressure
+        self.functions = height, profile, law, potential
+        self.parameters = k.Parameters(
+            height_parameters,
+            tip_parameters,
+            law_parameters,
+            np.append(compliance.instantaneous, compliance.modes),
+            np.array(compliance.retardation_times, float),
+        )
+        self.gap_of_tension = contact.surface.gap_of_largest_tension
+        self.open_frame = 1.5 * sqrt(contact.tip.radius * contact.surface.equilibrium_gap)
+        self.accuracy = 1e-3 * strictness
+        self.target = 0.2 * strictness**0.2
+        self.growth = 0.25 * min(1.0, strictness**0.1)
+        self.finest_level = max(0, ceil(log2(_COARSEST_SPACING / finest_spacing)))
+        self.level = min(_FIRST_LEVEL, self.finest_level)
+        self.mesh = self._mesh(self.level)
+        self.meshes, self.most_nodes = 1, self.mesh.nodes.size
+        self.finest_spacing = self.mesh.edge_spacing
+        modes = self.parameters.retardation.size
+        self.fields = np.zeros((k.MEMORY + modes, self.mesh.nodes.size))
+        self.clock = np.zeros(k.CLOCK_SIZE)
+        self.clock[k.TIME] = motion.breaks[0]
+        self.clock[k.FRAME] = self.open_frame
+        work = contact.surface.work_of_adhesion
+        self.clock[k.FORCE_SCALE] = 0.2 * np.pi * contact.tip.radius * work
+
+    def _mesh(self, level: int) -> k.Mesh:
+        return k.Mesh(*unit_mesh(_COARSEST_SPACING * 2.0**-level, self.growth, EXTENT))
+
+    @property
+    def time(self) -> float:
+        """The instant, s."""
+        return float(self.clock[k.TIME])
+
+    @property
+    def coarseness_allowed(self) -> tuple[float, float]:
+        """Bounds of the coarseness within which the mesh is kept."""
+        finest = 0.35 * self.target if self.level > 0 else 0.0
+        return finest, 1.3 * self.target if self.level < self.finest_level else np.inf
+
+    def remesh(self, coarseness: float) -> None:
+        """Carry all fields to the mesh that suits a cohesive zone seen ``coarseness`` from here."""
+        level = _FIRST_LEVEL
+        if coarseness > 0:
+            wanted = self.mesh.edge_spacing * self.target / coarseness
+            level = ceil(log2(_COARSEST_SPACING / wanted) - 1e-9)
+        old, self.level = self.mesh, min(max(level, 0), self.finest_level)
+        self.mesh = self._mesh(self.level)
+        fields = np.empty((self.fields.shape[0], self.mesh.nodes.size))
+        for before, after in zip(self.fields, fields, strict=True):
+            k.transfer(
+                before, old.nodes.size, old.nodes[-1], old.edge_spacing, old.growth, 1.0,
+                self.mesh.nodes, after,
+            )  # fmt: skip
+        self.fields = fields
+        self.meshes += 1
+        self.most_nodes = max(self.most_nodes, self.mesh.nodes.size)
+        self.finest_spacing = min(self.finest_spacing, self.mesh.edge_spacing)
+
+    def settle(self) -> np.ndarray:
+        """Equilibrate at frozen memory and return the state as a record."""
+        mesh, clock = self.mesh, self.clock
+        height, profile, law, potential = self.functions
+        n, frame = mesh.nodes.size, clock[k.FRAME]
+        tip, pressure, scratch = np.empty(n), np.empty(n), np.empty(n)
+        profile(frame * mesh.nodes, self.parameters.tip, tip, n)
+        h0 = height(self.time, self.parameters.height)
+        u, memory = self.fields[k.DEFORMATION], self.fields[k.MEMORY :]
+        instantaneous, modes = self.parameters.compliance[0], self.parameters.compliance[1:]
+        v = -modes @ memory
+        iterations = k.settle(
+            u, v, frame * instantaneous, h0 + tip, mesh, law, potential, self.parameters.law,
+            self.accuracy,
+        )  # fmt: skip
+        if iterations < 0:
+            raise DivergedError(f"no stable surface found at tip height {h0:g} m")
+        self.fields[k.LOAD] = (v - u) / instantaneous
+        gap = h0 + tip - u
+        law(gap, self.parameters.law, pressure, scratch, n)
+        force = k.tip_force(
+            pressure, gap, mesh, frame, tip[-1], potential, self.parameters.law, scratch
+        )
+        edge = frame * k.radius_of_gap(gap, mesh.nodes, self.gap_of_tension)
+        zone = frame * k.radius_of_gap(gap, mesh.nodes, 2 * self.gap_of_tension) - edge
+        lag = self.fields[k.LOAD] - memory
+        rates = modes / self.parameters.retardation
+        clock[k.FRAME_EARLIER] = clock[k.FRAME_EARLIEST] = frame
+        clock[k.EDGE], clock[k.AXIS_GAP], clock[k.FORCE] = edge, gap[0], force
+        clock[k.FORCE_SCALE] = max(clock[k.FORCE_SCALE], abs(force))
+        clock[k.HISTORY] = 1
+        record = np.zeros(k.RECORD_WIDTH)
+        record[k.R_TIME], record[k.R_HEIGHT], record[k.R_FORCE] = self.time, h0, force
+        record[k.R_EDGE], record[k.R_AXIS], record[k.R_FRAME] = edge, u[0], frame
+        record[k.R_LOSS] = 2 * np.pi * frame * rates @ np.sum((lag @ mesh.stiffness) * lag, axis=1)
+        record[k.R_COARSENESS] = frame * mesh.edge_spacing / zone if edge else 0.0
+        return record
+
+    def energy(self) -> float:
+        """Energy of the contact as an instantaneous elastic one, to infinity, J."""
+        mesh, frame = self.mesh, self.clock[k.FRAME]
+        h0 = self.functions[0](self.time, self.parameters.height)
+        load = self.fields[k.LOAD]
+        elastic = np.pi * frame * self.parameters.compliance[0] * (load @ mesh.stiffness @ load)
+
+        def density(radius, deformation):
+            gap = h0 + self.contact.tip.profile(radius) - deformation
+            return self.contact.surface.potential(gap)
+
+        near = frame**2 * mesh.masses @ density(frame * mesh.nodes, self.fields[k.DEFORMATION])
+        end = frame * mesh.nodes[-1]
+        r = 2 * end / (1 + _POINTS)
+        beyond = np.sum(_WEIGHTS * density(r, 0.0) * r**3 / (2 * end))
+        return float(elastic + 2 * np.pi * (near + beyond))
