@@ -1,0 +1,7 @@
+"""``python -m softafm``: the command line."""
+
+import sys
+
+from softafm.cli import main
+
+sys.exit(main())
