@@ -53,8 +53,12 @@ def random_run(random):
         touching = 3 * depth / (2 * np.pi * frequency * amplitude)
         tapped = with_creep(touching * between(0.01, 10))
         scale = 0.02 * amplitude
-        return contact, scale, lambda tolerance: sa.tapping_cycle(
-            tapped, amplitude, mean_height, frequency, tolerance=tolerance
+        return (
+            contact,
+            scale,
+            lambda tolerance: sa.tapping_cycle(
+                tapped, amplitude, mean_height, frequency, tolerance=tolerance
+            ),
         )
     speed = between(1e-8, 1e-3)
     pressed = with_creep(depth / speed * between(0.01, 100))

@@ -1,6 +1,6 @@
 """What a user waits for: import, the first run of a machine, the first run of a later process.
 
-    python benchmarks/startup.py
+python benchmarks/startup.py
 """
 
 import os

@@ -64,7 +64,7 @@ def test_gaussian_pressure(contact_mesh, width):
 
 
 def test_error_falls_with_the_third_power_of_the_spacing():
-    # The zeta-regularised trapezoidal rule is of third order in the node spacing, here set by growth.
+    # The zeta-regularised trapezoidal rule is of third order in the spacing, here by growth.
     def error(growth):
         mesh = unit_mesh(2 * growth, growth, 8.0)
         exact = np.sqrt(np.pi) * 1.5 * i0e((mesh.nodes / 1.5) ** 2 / 2)

@@ -1,5 +1,6 @@
 """Tips, surface laws, samples and motions: their formulas, and what they refuse."""
 
+import itertools
 from dataclasses import FrozenInstanceError, fields
 from math import inf, nan, pi
 
@@ -75,10 +76,8 @@ def test_work_of_adhesion_is_the_work_to_separate(law):
 def test_tension_is_largest_where_the_law_says(law):
     gap = law.gap_of_largest_tension
     around = law.pressure(gap * np.linspace(0.8, 1.3, 2001))
-    assert law.pressure(gap) == pytest.approx(around.min(), rel=1e-12)
-    assert np.abs(around / around.min()).argmax() in (799, 800, 801) or law.pressure(gap) <= min(
-        around
-    ) * (1 - 1e-12)
+    assert np.all(law.pressure(gap) <= around * (1 - 1e-12))
+    assert law.pressure(gap) == pytest.approx(around.min(), rel=1e-6)
 
 
 @given(positive, positive)
@@ -252,7 +251,9 @@ motions = st.one_of(
         ),
         st.floats(-10, 10),
         st.lists(st.floats(0.01, 10), min_size=7, max_size=7),
-        st.lists(st.floats(-20, 20), min_size=8, max_size=8),
+        st.lists(st.integers(-20000, 20000), min_size=8, max_size=8)
+        .filter(lambda h: np.all(np.diff(h) != 0))
+        .map(lambda h: [1e-3 * x for x in h]),
     ),
 )
 
@@ -302,7 +303,7 @@ def test_breaks_and_landmarks_are_times_of_the_motion(motion):
     assert np.all(motion.landmarks < motion.breaks[-1])
     # Between these times the height is monotonic, so no extreme is missed.
     stops = np.union1d(motion.breaks, motion.landmarks)
-    for a, b in zip(stops, stops[1:], strict=False):
+    for a, b in itertools.pairwise(stops):
         height = motion.height(np.linspace(a, b, 50))
         steps = np.diff(height)
         slack = 1e-12 * np.ptp(height) + 1e-22
@@ -350,16 +351,25 @@ def test_trajectories_compare_by_value():
 
 CASES = [(build, field) for build, values in GOOD.items() for field in values]
 NAMES = [f"{build.__qualname__}-{field}" for build, field in CASES]
+
+
+def is_number(text):
+    try:
+        return np.isfinite(float(text))
+    except ValueError:
+        return False
+
+
 not_numbers = st.one_of(
     st.sampled_from([nan, inf, -inf, None, "", "10 nm", "soft", [1e-9, 2e-9], {}, 1j]),
-    st.text(max_size=5).filter(lambda text: not text.strip().replace(".", "").isdigit()),
+    st.text(max_size=5).filter(lambda text: not is_number(text)),
 )
 not_positive = st.one_of(st.just(0), st.just(-0.0), st.floats(max_value=0, allow_nan=False))
 
 
 def refusal(build, **values):
     """The message with which ``build`` refuses ``values``."""
-    with pytest.raises(ValueError, match=".") as caught:
+    with pytest.raises(ValueError, match=r".") as caught:
         build(**values)
     return str(caught.value)
 
@@ -379,12 +389,10 @@ def test_what_is_no_number_is_refused(build, field, data):
     assert_one_line_naming(field, message)
 
 
-@pytest.mark.parametrize(("build", "field"), CASES, ids=NAMES)
+@pytest.mark.parametrize(("build", "field"), [c for c in CASES if c[1] not in SIGNED])
 @given(data=st.data())
 @settings(max_examples=15, deadline=None)
 def test_what_is_not_positive_is_refused(build, field, data):
-    if field in SIGNED:
-        pytest.skip("may be negative")
     value = data.draw(not_positive)
     message = refusal(build, **{**GOOD[build], field: value})
     assert_one_line_naming(field, message)
@@ -536,10 +544,10 @@ def test_contacts_shrink_as_the_tip_rises(height):
 
 @pytest.mark.parametrize("tolerance", [0, -1e-3, 1e-6, 0.2, 1, nan, inf, None, "tight"])
 def test_tolerances_out_of_range_are_refused(tolerance):
-    with pytest.raises(ValueError, match="^tolerance") as caught:
+    with pytest.raises(ValueError, match=r"^tolerance") as caught:
         sa.force_distance(lab(), sa.Triangle(5e-9, 1e-9, 1e-6), tolerance=tolerance)
     assert_one_line_naming("tolerance", str(caught.value))
-    with pytest.raises(ValueError, match="^tolerance"):
+    with pytest.raises(ValueError, match=r"^tolerance"):
         sa.tapping_cycle(lab(), 2e-9, 4e-9, 1e5, tolerance=tolerance)
 
 
@@ -574,6 +582,6 @@ def test_a_start_inside_the_surface_is_refused(ratio):
 )
 def test_taps_with_bad_numbers_are_refused(field, value):
     values = {"amplitude": 2e-9, "mean_height": 4e-9, "frequency": 1e5, "cycles": 1, field: value}
-    with pytest.raises(ValueError, match=f"^{field}") as caught:
+    with pytest.raises(ValueError, match=rf"^{field}") as caught:
         sa.tapping_cycle(lab(), **values)
     assert_one_line_naming(field, str(caught.value))

@@ -14,6 +14,8 @@ def positive(name: str, value: float, unit: str) -> float:
 def finite(name: str, value: float, unit: str) -> float:
     """Return ``value`` as a float if it is a finite real number, else raise ValueError."""
     try:
+        if isinstance(value, bool | str | bytes):
+            raise TypeError
         number = float(value)
     except (TypeError, ValueError):
         raise ValueError(f"{name} = {value!r}: must be a number in {unit}") from None

@@ -102,9 +102,10 @@ class Sine:
         object.__setattr__(self, "mean_height", finite("mean_height", self.mean_height, "m"))
         object.__setattr__(self, "amplitude", positive("amplitude", self.amplitude, "m"))
         object.__setattr__(self, "frequency", positive("frequency", self.frequency, "Hz"))
-        if isinstance(self.cycles, bool) or self.cycles != int(self.cycles) or self.cycles < 1:
+        cycles = finite("cycles", self.cycles, "periods")
+        if isinstance(self.cycles, bool) or cycles != int(cycles) or cycles < 1:
             raise ValueError(f"cycles = {self.cycles!r}: must be a whole number, at least 1")
-        object.__setattr__(self, "cycles", int(self.cycles))
+        object.__setattr__(self, "cycles", int(cycles))
 
     @property
     def breaks(self) -> np.ndarray:
@@ -160,8 +161,7 @@ class Trajectory:
     def __init__(self, time, height):
         from scipy.interpolate import PchipInterpolator
 
-        self.time = np.array(time, float)
-        self.heights = np.array(height, float)
+        self.time, self.heights = as_numbers("time", time), as_numbers("height", height)
         if self.time.ndim != 1 or self.time.shape != self.heights.shape or self.time.size < 2:
             raise ValueError(
                 f"time and height have shapes {self.time.shape} and {self.heights.shape}: must be "
@@ -198,8 +198,13 @@ class Trajectory:
 
     @property
     def breaks(self) -> np.ndarray:
-        """First and last time, s."""
-        return self.time[[0, -1]]
+        """First and last time and those of the corners between them, s.
+
+        A corner is a sample where the velocity changes by over a tenth of its largest magnitude.
+        """
+        velocity = np.diff(self.heights) / np.diff(self.time)
+        corner = np.abs(np.diff(velocity)) > 0.1 * np.abs(velocity).max()
+        return self.time[np.concatenate([[True], corner, [True]])]
 
     @property
     def landmarks(self) -> np.ndarray:
@@ -227,3 +232,11 @@ class Trajectory:
         from softafm.kernels import sampled
 
         return sampled, np.concatenate([self.time, self.heights, self._rate(self.time)])
+
+
+def as_numbers(name: str, values) -> np.ndarray:
+    """Return a copy of ``values`` as an array of floats, or raise ValueError naming them."""
+    try:
+        return np.array(values, float)
+    except (TypeError, ValueError):
+        raise ValueError(f"{name}: must be a sequence of numbers") from None

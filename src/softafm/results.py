@@ -125,7 +125,9 @@ def save(result: "Dataset", path, *, overwrite: bool = False) -> None:
     OSError
         If the folder does not exist or cannot be written.
     """
-    _write(path, overwrite, lambda part: result.to_netcdf(part, engine="h5netcdf"))
+    # Formed in memory: on a full disk HDF5 itself may take the process down with it.
+    content = result.to_netcdf(engine="h5netcdf")
+    _write(path, overwrite, lambda part: Path(part).write_bytes(content))
 
 
 def load(path) -> "Dataset":

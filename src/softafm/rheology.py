@@ -184,6 +184,8 @@ class GeneralizedKelvinVoigt(_Solid):
 
     def __post_init__(self):
         def all_positive(name, values, unit):
+            if isinstance(values, str) or not hasattr(values, "__iter__"):
+                raise ValueError(f"{name} = {values!r}: must be a list of numbers in {unit}")
             return tuple(positive(f"{name}[{i}]", v, unit) for i, v in enumerate(values))
 
         object.__setattr__(self, "E0", positive("E0", self.E0, "Pa"))

@@ -73,9 +73,7 @@ def tapping_cycle(
     tops = period * np.arange(motion.cycles + 1)
 
     def each_cycle(weight):
-        return np.array(
-            [history.integrate(history.force, weight, a, b) for a, b in pairwise(tops)]
-        )
+        return np.array([history.integrate(history.force, weight, a, b) for a, b in pairwise(tops)])
 
     virial = each_cycle(lambda t: motion.height(t) - motion.mean_height) / period
     dissipation = -each_cycle(motion.velocity)

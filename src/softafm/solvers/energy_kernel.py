@@ -74,10 +74,10 @@ class Parameters(NamedTuple):
 class Controls(NamedTuple):
     """What steers ``advance``: times s, lengths m, speed m/s, the rest dimensionless.
 
-    ``prediction``, ``memory`` and ``force`` are the errors allowed per step; ``newton`` the accuracy
-    of an equilibrium; all relative to the gap, but ``force`` to the largest force so far.
-    ``slack`` is how far the edge moves, in edge spacings, while the frame catches up with it; remeshing is asked for when
-    the coarseness of a record leaves ``finest`` to ``coarsest``.
+    ``prediction``, ``memory`` and ``force`` are the errors allowed per step, ``newton`` that of an
+    equilibrium; all relative to the gap, but ``force`` to the largest force so far.
+    ``slack`` is how far the edge moves, in edge spacings, while the frame catches up with it.
+    Remeshing is asked for when the coarseness of a record leaves ``finest`` to ``coarsest``.
     """
 
     end: float
@@ -116,7 +116,7 @@ def transfer(values, n, end, edge_spacing, growth, stretch, nodes, out):
             out[i] = values[n - 1] * end / r
             continue
         x = (asinh(scale * (r - 1.0)) + asinh(scale * (r + 1.0))) / growth
-        base = min(int(floor(x)) - 2, n - 6)
+        base = min(floor(x) - 2, n - 6)
         t0 = x - base
         t1, t2, t3, t4, t5 = t0 - 1.0, t0 - 2.0, t0 - 3.0, t0 - 4.0, t0 - 5.0
         out[i] = (
@@ -397,11 +397,15 @@ def predict(frame, step, history, fields, clock, mesh, weights, guess, shape):
 @njit((_V, float64, float64, float64, float64), cache=True)
 def _move_clock(clock, step, frame, edge, force):
     clock[FORCE_EARLIEST], clock[FORCE_EARLIER], clock[FORCE] = (
-        clock[FORCE_EARLIER], clock[FORCE], force,
+        clock[FORCE_EARLIER],
+        clock[FORCE],
+        force,
     )
     clock[FORCE_SCALE] = max(clock[FORCE_SCALE], abs(force))
     clock[FRAME_EARLIEST], clock[FRAME_EARLIER], clock[FRAME] = (
-        clock[FRAME_EARLIER], clock[FRAME], frame,
+        clock[FRAME_EARLIER],
+        clock[FRAME],
+        frame,
     )
     clock[EDGE_EARLIER], clock[EDGE] = clock[EDGE], edge
     clock[BEFORE], clock[LAST] = clock[LAST], step
@@ -506,7 +510,9 @@ def advance(
 
         for i in range(n):
             load_new[i] = (v[i] - u[i]) / c
-        force = tip_force(pressure, gap, mesh, frame, tip[n - 1], potential, parameters.law, scratch)
+        force = tip_force(
+            pressure, gap, mesh, frame, tip[n - 1], potential, parameters.law, scratch
+        )
 
         error = 0.0
         for i in range(n):

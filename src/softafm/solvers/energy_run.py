@@ -1,6 +1,7 @@
 """One run of the energy solver: from stop to stop, through falls, into a history."""
 
 from collections.abc import Iterator
+from itertools import pairwise
 from math import sqrt
 
 import numpy as np
@@ -13,6 +14,7 @@ from softafm.solvers.history import History
 from softafm.solvers.shapes import Shape, on_common_radii
 
 _CHUNK = 256
+_MOST_TRIES_IN_A_FALL = 5000.0
 
 
 class Run:
@@ -52,7 +54,7 @@ class Run:
         self._keep(surface.settle()[None], surface.fields[k.DEFORMATION][None])
         stops = np.union1d(motion.breaks, motion.landmarks)
         first, span = stops[0], stops[-1] - stops[0]
-        for start, stop in zip(stops[:-1], stops[1:], strict=True):
+        for start, stop in pairwise(stops):
             if start in motion.breaks:
                 self._begin_piece(stop)
             surface.target = self.target
@@ -115,7 +117,8 @@ class Run:
         The instantaneous compliance is given a retardation time of its own, far below the shortest
         step, but for a share too stiff to be unstable. The fall is then smooth in that time, and
         the same steps follow it on the same riding mesh to the shape that is stable without this
-        aid. A fall that starts slowly gets more of the fictitious time.
+        aid. A fall that starts slowly gets more of the fictitious time. One that takes too many
+        steps is left to the descent in energy that follows.
         """
         surface, clock, controls = self.surface, self.surface.clock, self.controls
         functions, parameters = surface.functions, surface.parameters
@@ -135,6 +138,7 @@ class Run:
             self.controls = controls._replace(
                 shortest_step=1e-9 * creep_time, longest_step=duration, top_speed=1e-300,
                 prediction=0.2, memory=0.2, force=1.0,
+                most_tries=min(controls.most_tries, clock[k.TRIES] + _MOST_TRIES_IN_A_FALL),
             )  # fmt: skip
             clock[k.TIME], clock[k.STEP], clock[k.HISTORY] = 0.0, 1e-3 * creep_time, 1
             outcome = k.FULL
@@ -199,12 +203,15 @@ class Run:
             return ()
         spacing = self.surface.mesh.edge_spacing * edge
         law = self.contact.surface
-        z0 = sqrt(coarseness / self.target) * law.equilibrium_gap
+        # Seen through coarse nodes the zone looks wide; the relaxed cohesive length bounds it.
+        wide = max(coarseness, 2 * spacing / self.contact.cohesive_length) / self.target
+        z0 = sqrt(wide) * law.equilibrium_gap
         return (
-            f"the cohesive zone at the contact edge, {spacing / coarseness:.2g} m wide, is resolved "
-            f"by nodes {spacing:.2g} m apart (finest_spacing = {self.solver.finest_spacing:g} "
-            f"contact radii) where {self.target * spacing / coarseness:.2g} m is needed: forces and "
-            f"above all the loop energy may be wrong. Lower solvers.Energy(finest_spacing=...), or "
-            f"enlarge z0 at fixed work of adhesion, LennardJones.from_work_of_adhesion("
+            f"the cohesive zone at the contact edge, {spacing / coarseness:.2g} m wide, is "
+            f"resolved by nodes {spacing:.2g} m apart (finest_spacing = {self.solver.finest_spacing:g} "
+            f"contact radii) where {self.target * spacing / coarseness:.2g} m is needed: forces "
+            "and above all the loop energy may be wrong. Lower "
+            "solvers.Energy(finest_spacing=...), or enlarge z0 at fixed work of adhesion, "
+            "LennardJones.from_work_of_adhesion("
             f"W={law.work_of_adhesion:.4g}, z0={z0:.2g})",
         )

@@ -78,8 +78,9 @@ class History:
             top = inside[np.argmax(height[inside])]
             value = height[top]
             if inside[0] < top < inside[-1]:
-                (x0, x1), (y0, y1) = (time[top - 1 : top + 2 : 2] - time[top]), (
-                    height[top - 1 : top + 2 : 2] - value
+                (x0, x1), (y0, y1) = (
+                    time[top - 1 : top + 2 : 2] - time[top],
+                    height[top - 1 : top + 2 : 2] - value,
                 )
                 curvature = (y1 / x1 - y0 / x0) / (x1 - x0)
                 slope = y0 / x0 - curvature * x0

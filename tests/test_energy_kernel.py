@@ -1,0 +1,457 @@
+"""The compiled kernels of the energy solver against readable twins in NumPy and SciPy."""
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from scipy.integrate import quad
+from scipy.interpolate import CubicSpline
+
+import softafm as sa
+from softafm.halfspace.mesh import node_index, unit_mesh
+from softafm.solvers import dense
+from softafm.solvers import energy_kernel as k
+
+R, W, Z0 = 10e-9, 0.05, 0.3e-9
+LAW = sa.LennardJones.from_work_of_adhesion(W, Z0)
+TIP = sa.Paraboloid(R)
+FRAME = 1.5 * np.sqrt(R * Z0)
+seeds = st.integers(0, 2**32 - 1)
+
+
+# Dense systems
+
+
+@given(st.integers(1, 90), seeds)
+@settings(deadline=None, max_examples=60)
+def test_positive_systems_are_solved(n, seed):
+    random = np.random.default_rng(seed)
+    root = random.normal(size=(n, n))
+    matrix = root @ root.T + 0.1 * n * np.eye(n)
+    right = random.normal(size=n)
+    factor = np.triu(matrix) + np.tril(np.full((n, n), np.nan), -1)  # only the upper part is read
+    assert dense.factorise(factor, n)
+    upper = np.linalg.cholesky(matrix).T
+    found = np.triu(factor, 1) + np.diag(1 / np.diag(factor))
+    assert np.allclose(found, upper, rtol=0, atol=1e-12 * np.abs(upper).max())
+    x = right.copy()
+    dense.solve_factorised(factor, x, n)
+    wanted = np.linalg.solve(matrix, right)
+    assert np.allclose(x, wanted, rtol=0, atol=1e-11 * np.abs(wanted).max())
+    out = np.empty(n)
+    dense.multiply(matrix, right, out, n)
+    assert np.allclose(out, matrix @ right, rtol=0, atol=1e-12 * np.abs(out).max())
+
+
+@given(st.integers(1, 90), st.floats(-10, 0), seeds)
+@settings(deadline=None, max_examples=60)
+def test_indefinite_systems_are_rejected(n, lowest, seed):
+    random = np.random.default_rng(seed)
+    vectors, _ = np.linalg.qr(random.normal(size=(n, n)))
+    values = random.uniform(0.5, 2, n)
+    values[0] = lowest - 1e-6
+    assert not dense.factorise(np.ascontiguousarray((vectors * values) @ vectors.T), n)
+
+
+@pytest.mark.parametrize("n", [1, 3, 4, 5, 30])
+def test_systems_with_nan_are_rejected(n):
+    matrix = np.eye(n)
+    matrix[n // 2, n // 2] = np.nan
+    assert not dense.factorise(matrix, n)
+
+
+# Fields from mesh to mesh
+
+
+def carried(values, old, new, stretch=1.0):
+    out = np.empty(new.nodes.size)
+    k.transfer(
+        values,
+        values.size,
+        old.nodes[-1],
+        old.edge_spacing,
+        old.growth,
+        stretch,
+        new.nodes,
+        out,
+    )
+    return out
+
+
+OLD, NEW = unit_mesh(0.1, 0.25, 8.0), unit_mesh(0.03, 0.2, 8.0)
+
+
+@given(st.floats(-1, 1), st.floats(-1, 1), st.floats(-1, 1), st.floats(0.5, 1.5))
+@settings(deadline=None)
+def test_transfer_is_exact_for_even_polynomials(a, b, c, stretch):
+    # Even in the node index j, of degree 4.
+    def polynomial(j):
+        return a + b * (j / 20) ** 2 + c * (j / 20) ** 4
+
+    values = polynomial(np.arange(OLD.nodes.size))
+    radius = stretch * NEW.nodes
+    inside = radius <= OLD.nodes[-1]
+    found = carried(values, OLD, NEW, stretch)[inside]
+    wanted = polynomial(node_index(radius[inside], OLD.edge_spacing, OLD.growth))
+    assert np.allclose(found, wanted, rtol=0, atol=1e-12 * (1 + np.abs(values).max()))
+
+
+@pytest.mark.parametrize("stretch", [0.5, 1.0, 1.1, 2.0])
+def test_transfer_of_a_smooth_field(stretch):
+    def field(r):
+        return 1 / np.sqrt(1 + r**2)
+
+    radius = stretch * NEW.nodes
+    found = carried(field(OLD.nodes), OLD, NEW, stretch)
+    inside = radius <= OLD.nodes[-1]
+    assert np.allclose(found[inside], field(radius[inside]), rtol=3e-5)
+    beyond = field(OLD.nodes[-1]) * OLD.nodes[-1] / radius[~inside]
+    assert np.allclose(found[~inside], beyond, rtol=1e-14)
+    assert stretch <= 1 or np.any(~inside)
+
+
+def test_transfer_error_falls_with_a_high_power_of_the_growth():
+    def error(growth):
+        mesh = unit_mesh(growth / 2, growth, 8.0)
+        found = carried(np.exp(-(mesh.nodes**2)), mesh, NEW)
+        inside = mesh.nodes[-1] >= NEW.nodes
+        return np.abs(found - np.exp(-(NEW.nodes**2)))[inside].max()
+
+    growths = np.array([0.4, 0.2, 0.1])
+    order = np.polyfit(np.log(growths), np.log([error(g) for g in growths]), 1)[0]
+    assert order > 5
+
+
+def test_reframing_there_and_back():
+    field = 1 / np.sqrt(1 + OLD.nodes**2)
+    mesh = k.Mesh(*OLD)
+    wider, back, same = (np.empty(field.size) for _ in range(3))
+    k.reframe(field, mesh, 1.05, wider)
+    k.reframe(wider, mesh, 1 / 1.05, back)
+    inside = OLD.nodes < 0.9 * OLD.nodes[-1]  # beyond it the wider field is continued as 1/r
+    assert np.allclose(back[inside], field[inside], rtol=3e-5)
+    k.reframe(field, mesh, 1.0, same)
+    assert np.array_equal(same, field)
+
+
+# Memory
+
+
+def lagrange(instants, which):
+    """The polynomial that is 1 at instants[which] and 0 at the others."""
+    others = np.delete(instants, which)
+    return np.poly1d(np.poly(others)) / np.prod(instants[which] - others)
+
+
+def filtered(ratio, instants):
+    """Weights of y⁺ = decay·y + Σ weight·q(instants) for q interpolated, step 1, τ = 1/ratio."""
+    weights = []
+    for which in range(len(instants)):
+        basis = lagrange(np.array(instants), which)
+        # Beyond 50 retardation times nothing is remembered.
+        start = max(0.0, 1 - 50 / ratio)
+        weights.append(
+            quad(
+                lambda s, basis=basis: ratio * np.exp(-ratio * (1 - s)) * basis(s),
+                start,
+                1,
+                epsabs=1e-14,
+                epsrel=1e-12,
+            )[0]
+        )
+    return np.exp(-ratio), weights
+
+
+def weights_of(step, last, order, compliance, retardation):
+    weights = np.empty((len(retardation), 5))
+    k.memory_weights(
+        step, last, order, np.array(compliance, float), np.array(retardation, float), weights
+    )
+    return weights[:, :4]
+
+
+RATIOS = np.geomspace(1e-6, 1e3, 19)
+
+
+@pytest.mark.parametrize("ratio", RATIOS)
+def test_memory_of_a_linear_load(ratio):
+    decay, (now, new) = filtered(ratio, [0.0, 1.0])
+    (found,) = weights_of(2e-6, 1e-6, 1, [1.0, 5.0], [2e-6 / ratio])
+    assert found == pytest.approx([decay, 0, now, new], rel=1e-8, abs=1e-13)
+
+
+@pytest.mark.parametrize("last", [0.3, 1.0, 4.0])
+@pytest.mark.parametrize("ratio", RATIOS[RATIOS < 2])
+def test_memory_of_a_quadratic_load(ratio, last):
+    decay, (earlier, now, new) = filtered(ratio, [-last, 0.0, 1.0])
+    (found,) = weights_of(2e-6, last * 2e-6, 2, [1.0, 0.1], [2e-6 / ratio])
+    assert found == pytest.approx([decay, earlier, now, new], rel=1e-8, abs=1e-13)
+
+
+@pytest.mark.parametrize("order", [1, 2])
+@given(st.floats(-6, 3), st.floats(0.2, 5), st.floats(0, 3))
+@settings(deadline=None)
+def test_every_memory_formula_is_exact_for_linear_loads(order, log_ratio, last, log_lag):
+    # q = 1 + s, also where long steps ask for other weights than the quadratic's.
+    ratio = 10**log_ratio
+    decay, (now, new) = filtered(ratio, [0.0, 1.0])
+    (found,) = weights_of(1.0, last, order, [1.0, 10**log_lag], [1 / ratio])
+    response = found[1:] @ np.array([1 - last, 1.0, 2.0])
+    assert found[0] == pytest.approx(decay, rel=1e-8, abs=1e-13)
+    assert response == pytest.approx(now + 2 * new, rel=1e-8, abs=1e-13)
+
+
+def test_modes_do_not_touch_each_other():
+    both = weights_of(1e-6, 2e-6, 2, [1.0, 0.3, 0.1], [1e-6, 1e-4])
+    for mode, (compliance, time) in enumerate([(0.3, 1e-6), (0.1, 1e-4)]):
+        (alone,) = weights_of(1e-6, 2e-6, 2, [1.0, compliance], [time])
+        assert np.array_equal(both[mode], alone)
+
+
+@pytest.mark.parametrize("lag", [1, 3, 10, 30, 100, 300, 1000])
+def test_memory_of_a_contact_held_rigidly_never_grows(lag):
+    # u = -(J_g q + J_1 y) = 0, so q = -λ y with λ = J_1/J_g: both relax.
+    for ratio in np.geomspace(1e-3, 1e2, 101):
+        (first,) = weights_of(1.0, 1.0, 1, [1.0, lag], [1 / ratio])
+        (later,) = weights_of(1.0, 1.0, 2, [1.0, lag], [1 / ratio])
+        before, y = 1.0, (first[0] - lag * first[2]) / (1 + lag * first[3])
+        assert abs(y) <= 1
+        decay, earlier, now, new = later
+        recursion = np.array([[decay - lag * now, -lag * earlier], [1 + lag * new, 0]])
+        recursion[0] /= 1 + lag * new
+        recursion[1] = 1, 0
+        assert np.abs(np.linalg.eigvals(recursion)).max() < 1
+        largest = 1.0
+        for _ in range(400):
+            before, y = y, recursion[0] @ [y, before]
+            largest = max(largest, abs(y))
+        assert largest <= 1
+        assert abs(y) <= 1
+
+
+# Equilibrium
+
+
+MESH = k.Mesh(*unit_mesh(0.15, 0.25, 8.0))
+GAPS = TIP.profile(FRAME * MESH.nodes)
+PRESSURE, POTENTIAL, PARAMETERS = LAW.compiled_pressure
+
+
+def slope(gap):
+    step = 1e-5 * gap
+    return (LAW.pressure(gap + step) - LAW.pressure(gap - step)) / (2 * step)
+
+
+def newton_step(u, v, ac, h0):
+    """Displacement to the stationary point of Π, over the gap; lowest eigenvalue of its Hessian."""
+    gap = h0 + GAPS - u
+    gradient = MESH.stiffness @ (u - v) / ac + MESH.masses * LAW.pressure(gap)
+    hessian = MESH.stiffness / ac - np.diag(MESH.masses * slope(gap))
+    scale = 1 / np.sqrt(np.diag(MESH.stiffness) / ac)
+    lowest = np.linalg.eigvalsh(hessian * np.outer(scale, scale))[0]
+    return np.linalg.solve(hessian, gradient) / gap, lowest
+
+
+def energy(u, v, ac, h0):
+    strain = (u - v) @ MESH.stiffness @ (u - v) / (2 * ac)
+    return strain + MESH.masses @ LAW.potential(h0 + GAPS - u)
+
+
+surfaces = st.tuples(
+    st.floats(8, 11).map(lambda x: 10**x),  # modulus
+    st.floats(-3, 6).map(lambda x: x * Z0),  # tip height
+    st.floats(-3, 1).map(lambda x: x * Z0),  # depth of the memory
+    st.floats(0.5, 3),  # its width
+)
+
+
+def settled(modulus, h0, depth, width):
+    """Inputs of an equilibrium and the stable shape the surface falls to from a gap of 1.1 z0."""
+    v = depth / np.sqrt(1 + (MESH.nodes / width) ** 2)
+    ac = FRAME / modulus
+    u = np.minimum(v, h0 + GAPS - 1.1 * Z0)
+    before = energy(u, v, ac, h0)
+    iterations = k.settle(u, v, ac, h0 + GAPS, MESH, PRESSURE, POTENTIAL, PARAMETERS, 1e-9)
+    assert iterations > 0
+    return v, ac, u, before
+
+
+@given(surfaces)
+@settings(deadline=None, max_examples=60)
+def test_surfaces_settle_in_a_minimum_of_the_energy(surface):
+    h0 = surface[1]
+    v, ac, u, before = settled(*surface)
+    error, lowest = newton_step(u, v, ac, h0)
+    assert np.abs(error).max() < 1e-8
+    assert lowest > 0
+    after = energy(u, v, ac, h0)
+    assert after <= before + 1e-9 * abs(before)
+    # The stationary point is the contact problem itself: u = v - c K p.
+    pressure = LAW.pressure(h0 + GAPS - u)
+    influenced = ac * np.linalg.solve(MESH.stiffness, MESH.masses * pressure)
+    assert np.allclose(u, v - influenced, rtol=0, atol=1e-6 * Z0 + 1e-6 * np.abs(influenced).max())
+
+
+@given(surfaces, st.floats(-0.02, 0.02), seeds)
+@settings(deadline=None, max_examples=60)
+def test_newton_returns_to_a_stable_shape(surface, disturbance, seed):
+    h0 = surface[1]
+    v, ac, u, _ = settled(*surface)
+    _, lowest = newton_step(u, v, ac, h0)
+    gap = h0 + GAPS - u
+    guess = u + min(1, 10 * lowest) * disturbance * gap * np.exp(-(MESH.nodes**2))
+    n = u.size
+    work = np.empty((4, n))
+    iterations = k.equilibrate(
+        guess, v, ac, h0 + GAPS, MESH, PRESSURE, PARAMETERS, 0.3 * Z0, 1e-7, np.empty((n, n)), work
+    )
+    if iterations < 0:
+        # Near a fold the disturbed shape may already be unstable: that must be true then.
+        assert lowest < 0.1
+        return
+    error, lowest = newton_step(guess, v, ac, h0)
+    assert np.abs(error).max() < 1e-8
+    assert lowest > 0
+    assert np.allclose(work[0], h0 + GAPS - guess, rtol=1e-12)
+    scale = np.abs(LAW.pressure(work[0])).max()
+    assert np.allclose(work[1], LAW.pressure(work[0]), rtol=1e-7, atol=1e-7 * scale)
+
+
+def test_newton_refuses_unstable_and_pierced_guesses():
+    n = MESH.nodes.size
+    soft = FRAME / 1e7
+
+    def attempt(h0):
+        hessian, work = np.empty((n, n)), np.empty((4, n))
+        return k.equilibrate(
+            np.zeros(n), np.zeros(n), soft, h0 + GAPS, MESH, PRESSURE, PARAMETERS, 0.3 * Z0,
+            1e-7, hessian, work,
+        )  # fmt: skip
+
+    assert newton_step(np.zeros(n), np.zeros(n), soft, 1.5 * Z0)[1] < 0
+    assert attempt(1.5 * Z0) < 0
+    assert attempt(0.2 * Z0) < 0
+    assert attempt(-Z0) < 0
+    assert attempt(30 * Z0) > 0
+
+
+def test_force_has_the_tail_of_a_flat_surface():
+    # PHYSICS: F = (HR/6)(z0⁶/(4h⁸) - 1/h²) for all beyond the gap h; a rigid sample everywhere.
+    n = MESH.nodes.size
+    for h0 in (1.2 * Z0, 3 * Z0, 8 * Z0):
+        gap = h0 + GAPS
+        found = k.tip_force(
+            LAW.pressure(gap), gap, MESH, FRAME, GAPS[-1], POTENTIAL, PARAMETERS, np.empty(n)
+        )
+        exact = LAW.hamaker * R / 6 * (Z0**6 / (4 * h0**8) - 1 / h0**2)
+        assert found == pytest.approx(exact, rel=1e-4)
+
+
+def test_radius_of_a_gap():
+    gap = Z0 * (0.5 + MESH.nodes**2)
+    radius = k.radius_of_gap(gap, MESH.nodes, 1.5 * Z0)
+    assert radius == pytest.approx(1.0, abs=0.01)
+    assert k.radius_of_gap(gap, MESH.nodes, 0.4 * Z0) == 0
+    assert k.radius_of_gap(gap, MESH.nodes, 1e3 * Z0) == MESH.nodes[-1]
+
+
+@given(st.floats(0.1, 3), st.floats(0.1, 3), st.floats(0.1, 3))
+def test_extrapolation_continues_parabolas(step, last, before):
+    times = np.array([0.0, -last, -last - before])
+    weights = np.empty(3)
+    for history in (1, 2, 3):
+        k.extrapolation_weights(history, step, last, before, weights)
+        for power in range(history):
+            assert weights @ times**power == pytest.approx(step**power, rel=1e-9, abs=1e-9)
+
+
+# Whole steps
+
+
+def test_steps_equal_those_of_a_plain_newton_method():
+    compliance = np.array([1 / 2e9, 1 / 0.2e9, 1 / 1e9])
+    retardation = np.array([2e-7, 3e-6])
+    step, count = 2e-8, 6
+    motion = sa.Sine(1.5e-9, 0.3e-9, 1e6)
+    height, height_parameters = motion.compiled_height
+    profile, tip_parameters = TIP.compiled_profile
+    parameters = k.Parameters(
+        height_parameters, tip_parameters, PARAMETERS, compliance, retardation
+    )
+    controls = k.Controls(
+        end=1.0, shortest_step=step / 10, longest_step=step, top_speed=1e-300, open_frame=FRAME,
+        gap_of_tension=LAW.gap_of_largest_tension, prediction=1e3, memory=1e3, force=1e3,
+        newton=1e-11, slack=2.0, finest=0.0, coarsest=np.inf, most_tries=1e6,
+    )  # fmt: skip
+    n, modes = MESH.nodes.size, retardation.size
+    fields, clock = np.zeros((k.MEMORY + modes, n)), np.zeros(k.CLOCK_SIZE)
+    clock[k.STEP], clock[k.HISTORY] = step, 1
+    clock[k.FRAME] = clock[k.FRAME_EARLIER] = clock[k.FRAME_EARLIEST] = FRAME
+    clock[k.AXIS_GAP] = motion.height(0.0)
+    records, shapes = np.zeros((count + 1, k.RECORD_WIDTH)), np.zeros((count + 1, n))
+    outcome = k.advance(
+        height, profile, PRESSURE, POTENTIAL, parameters, MESH, controls, fields, clock, records,
+        shapes,
+    )  # fmt: skip
+    assert outcome == k.FULL
+    assert records[0, 0] == count + 1
+    assert clock[k.TIME] == pytest.approx(count * step)
+
+    # u = -K (J_g p + Σ J_m w_m), w the pressure filtered exactly, K = frame·S⁻¹ on unit masses.
+    K = FRAME * np.linalg.inv(MESH.stiffness) * MESH.masses
+    first = [filtered(step / tau, [0.0, 1.0]) for tau in retardation]
+    later = [filtered(step / tau, [-1.0, 0.0, 1.0]) for tau in retardation]
+    p_before, p, w, u = None, np.zeros(n), np.zeros((modes, n)), np.zeros(n)
+    for number in range(1, count + 1):
+        standoff = motion.height(number * step) + GAPS
+        known, share = np.empty((modes, n)), np.empty(modes)
+        for m in range(modes):
+            decay, weights = (first if number == 1 else later)[m]
+            share[m] = weights[-1]
+            known[m] = decay * w[m] + weights[-2] * p
+            if number > 1:
+                known[m] += weights[0] * p_before
+        c = compliance[0] + compliance[1:] @ share
+        v = -K @ (compliance[1:] @ known)
+        for _ in range(30):
+            gap = standoff - u
+            residual = u - v + c * K @ LAW.pressure(gap)
+            u = u - np.linalg.solve(np.eye(n) - c * K * slope(gap), residual)
+        p_before, p = p, LAW.pressure(standoff - u)
+        w = known + share[:, None] * p
+        lag = p - w
+        loss = (
+            2
+            * np.pi
+            * FRAME**2
+            * sum(
+                compliance[m + 1] / retardation[m] * (MESH.masses * lag[m]) @ (K @ lag[m])
+                for m in range(modes)
+            )
+        )
+        end = standoff[-1] - u[-1]
+        tail = LAW.hamaker * R / 6 * (Z0**6 / (4 * end**8) - 1 / end**2)
+        force = 2 * np.pi * FRAME**2 * MESH.masses @ p + tail
+        row = records[number]
+        scale = np.abs(u).max()
+        assert np.abs(shapes[number] - u).max() < 1e-10 * scale
+        assert row[k.R_TIME] == pytest.approx(number * step)
+        assert row[k.R_HEIGHT] == pytest.approx(motion.height(number * step), rel=1e-12)
+        assert row[k.R_FORCE] == pytest.approx(force, rel=1e-10)
+        assert row[k.R_AXIS] == pytest.approx(u[0], rel=1e-10)
+        assert row[k.R_LOSS] == pytest.approx(loss, rel=1e-8)
+        assert row[k.R_FRAME] == FRAME
+        assert row[k.R_EDGE] == row[k.R_JUMP] == 0
+    assert np.abs(fields[k.LOAD] - K @ p).max() < 1e-9 * np.abs(K @ p).max()
+    for m in range(modes):
+        assert np.abs(fields[k.MEMORY + m] - K @ w[m]).max() < 1e-9 * np.abs(K @ w[m]).max()
+
+
+def test_steps_stop_exactly_at_the_end():
+    motion = sa.Sine(3e-9, 0.3e-9, 1e6)
+    result = sa.force_distance(sa.Contact(TIP, sa.Elastic(1e9, 0.3), LAW), motion)
+    assert result["time"].values[-1] == motion.breaks[-1]
+    assert np.all(np.isin(motion.landmarks, result["time"].values))
+    spline = CubicSpline(result["time"], result["force"])
+    middle = (result["time"].values[1:] + result["time"].values[:-1]) / 2
+    assert np.abs(spline(middle)).max() <= 1.01 * np.abs(result["force"].values).max()
