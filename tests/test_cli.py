@@ -6,7 +6,9 @@ import re
 import signal
 import subprocess
 import sys
+import tempfile
 import warnings
+from pathlib import Path
 
 import pytest
 from hypothesis import given, settings
@@ -174,13 +176,32 @@ def test_an_unwritable_output_is_refused_before_the_run(folder, softafm, monkeyp
     assert "cannot write there" in refused(softafm("run", "ldpe-tapping.toml", "--out", out))
 
 
-@pytest.mark.skipif(not hasattr(os, "geteuid") or os.geteuid() == 0, reason="root writes anywhere")
-def test_a_write_protected_folder_and_file_are_refused(folder, softafm):
-    (folder / "old.nc").write_bytes(b"precious")
-    (folder / "old.nc").chmod(0o400)
+@pytest.fixture
+def users_folder(monkeypatch):
+    """An experiment in a folder of an ordinary user, as whom the test then runs."""
+    with tempfile.TemporaryDirectory() as name:
+        folder = Path(name)
+        folder.chmod(0o777)
+        config = folder / "ldpe-tapping.toml"
+        config.write_text(example_text("ldpe-tapping"), encoding="utf-8")
+        config.chmod(0o644)
+        monkeypatch.chdir(folder)
+        root = os.getuid() == 0
+        if root:
+            os.setresuid(65534, 65534, 0)
+        yield folder
+        if root:
+            os.setresuid(0, 0, 0)
+        monkeypatch.undo()
+
+
+@posix
+def test_a_write_protected_folder_and_file_are_refused(users_folder, softafm):
+    (users_folder / "old.nc").write_bytes(b"precious")
+    (users_folder / "old.nc").chmod(0o400)
     line = refused(softafm("run", "ldpe-tapping.toml", "--out", "old.nc", "--force"))
     assert "write-protected" in line
-    (folder / "locked").mkdir(mode=0o500)
+    (users_folder / "locked").mkdir(mode=0o500)
     line = refused(softafm("run", "ldpe-tapping.toml", "--out", "locked/new.nc"))
     assert "cannot write there" in line
 

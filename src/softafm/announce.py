@@ -7,7 +7,7 @@ from threading import Timer
 
 
 @contextmanager
-def announced_compilation(patience: float = 2.0) -> Iterator[None]:
+def announced_compilation(patience: float = 3.0) -> Iterator[None]:
     """Tell the user, on stderr, if what happens inside takes longer than ``patience`` seconds.
 
     Loading compiled code takes under a second; only a machine's first run waits for the compiler.

@@ -208,9 +208,10 @@ class Run:
         z0 = sqrt(wide) * law.equilibrium_gap
         return (
             f"the cohesive zone at the contact edge, {spacing / coarseness:.2g} m wide, is "
-            f"resolved by nodes {spacing:.2g} m apart (finest_spacing = {self.solver.finest_spacing:g} "
-            f"contact radii) where {self.target * spacing / coarseness:.2g} m is needed: forces "
-            "and above all the loop energy may be wrong. Lower "
+            f"resolved by nodes {spacing:.2g} m apart (finest_spacing = "
+            f"{self.solver.finest_spacing:g} contact radii) where "
+            f"{self.target * spacing / coarseness:.2g} m is needed: forces and above all the loop "
+            "energy may be wrong. Lower "
             "solvers.Energy(finest_spacing=...), or enlarge z0 at fixed work of adhesion, "
             "LennardJones.from_work_of_adhesion("
             f"W={law.work_of_adhesion:.4g}, z0={z0:.2g})",
