@@ -5,6 +5,7 @@ and motion, from the on-disk cache, at the speed of inlined code.
 """
 
 from collections.abc import Callable
+from functools import cached_property
 from typing import Any
 
 from numba import float64, int64, njit, types, void
@@ -29,17 +30,25 @@ HEIGHT = float64(float64, _ARRAY)
 class CompiledFunction(types.WrapperAddressProtocol):
     """A function compiled for one signature, to be called from Python or handed to a kernel.
 
-    It looks its address up once; numba would do so at every call, at 0.1 ms each.
+    It is compiled, or loaded from the disk cache, at its first use, and its address is looked up
+    once: numba would do that at every call, at 0.1 ms each.
     """
 
     def __init__(self, function: Callable, signature: Any):
-        self._function = njit(signature, cache=True, fastmath=_FAST)(function)
-        self._signature = signature
-        self._address = _get_wrapper_address(self._function, signature)
+        self._python, self._signature = function, signature
         self.__doc__ = function.__doc__
 
+    @cached_property
+    def _compiled(self):
+        fast = {"reassoc", "contract", "nsz", "arcp"}
+        return njit(self._signature, cache=True, fastmath=fast)(self._python)
+
+    @cached_property
+    def _address(self) -> int:
+        return _get_wrapper_address(self._compiled, self._signature)
+
     def __call__(self, *arguments):
-        return self._function(*arguments)
+        return self._compiled(*arguments)
 
     def __wrapper_address__(self) -> int:
         return self._address
@@ -55,5 +64,5 @@ def pointer(signature: Any) -> types.FunctionType:
 
 
 def compiled(signature: Any) -> Callable[[Callable], CompiledFunction]:
-    """Decorate a function: compile it for ``signature`` now, or load it from the disk cache."""
+    """Decorate a function, to be compiled for ``signature`` when it is first used."""
     return lambda function: CompiledFunction(function, signature)

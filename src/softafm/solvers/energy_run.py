@@ -47,6 +47,7 @@ class Run:
         self.chunks: list[np.ndarray] = []
         self.shapes: list[Shape] | None = [] if keep_shapes else None
         self.coarsest = 0.0, 0.0
+        self.slips, self.end_of_slip = 0, -np.inf
 
     def steps(self) -> Iterator[float]:
         """Run, yielding the fraction of the motion done at every return of the compiled loop."""
@@ -74,7 +75,7 @@ class Run:
                 if outcome == k.REMESH:
                     surface.remesh(records[-1, k.R_COARSENESS])
                 if outcome == k.FALL:
-                    self._fall()
+                    self._fall(stop)
                 yield (surface.time - first) / span
 
     def _begin_piece(self, stop):
@@ -96,13 +97,18 @@ class Run:
         count = int(self.records[0, 0])
         return outcome, self.records[1:count], shapes[1:count]
 
-    def _fall(self):
-        """Pass the shortest step where no stable shape is near, and note a jump if it is one."""
+    def _fall(self, stop):
+        """Pass a short step where no stable shape is near, and note a jump if it is one."""
         surface, clock = self.surface, self.surface.clock
         start, gap, edge = surface.time, clock[k.AXIS_GAP], clock[k.EDGE]
-        before, duration = surface.energy(), self.controls.shortest_step
-        self._creep_down(start + duration)
-        clock[k.TIME], clock[k.STEP] = start + duration, 10 * duration
+        before = surface.energy()
+        # A slack contact may slip from node to node: pass such a stretch in growing steps.
+        self.slips = min(self.slips + 1, 8) if start < self.end_of_slip else 0
+        duration = min(2.0**self.slips * self.controls.shortest_step, stop - start)
+        end = stop if duration == stop - start else start + duration
+        self.end_of_slip = start + 20 * duration
+        self._creep_down(end, duration)
+        clock[k.TIME], clock[k.STEP] = end, 10 * self.controls.shortest_step
         record = surface.settle()
         if abs(clock[k.AXIS_GAP] - gap) > 0.1 * gap or abs(clock[k.EDGE] - edge) > 0.05 * edge:
             record[k.R_JUMP] = before - surface.energy()
@@ -111,8 +117,8 @@ class Run:
             surface.target = max(surface.target / 2, 0.02)
         self._keep(record[None], surface.fields[k.DEFORMATION][None])
 
-    def _creep_down(self, time):
-        """Follow a fall under the tip height of ``time`` by way of a fast fictitious creep.
+    def _creep_down(self, time, duration):
+        """Follow a fall, ``duration`` long and under the tip height of ``time``, as a fast creep.
 
         The instantaneous compliance is given a retardation time of its own, far below the shortest
         step, but for a share too stiff to be unstable. The fall is then smooth in that time, and
@@ -125,7 +131,6 @@ class Run:
         instantaneous, modes = parameters.compliance[0], parameters.compliance[1:]
         stiff = min(0.2, (0.4 / self.contact.tabor_instantaneous) ** 1.5) * instantaneous
         delayed = instantaneous - stiff
-        duration = controls.shortest_step
         surface.functions = (still, *functions[1:])
         surface.fields = np.vstack([surface.fields, surface.fields[k.LOAD]])
         for patience in range(8):
