@@ -5,6 +5,7 @@ Every solid is written as a generalised Kelvin-Voigt chain,
 1 − ν² (Rajabifar et al. 2021, equations 4 and 9).
 """
 
+from abc import ABC, abstractmethod
 from dataclasses import dataclass
 from typing import ClassVar, NamedTuple
 
@@ -36,13 +37,13 @@ class ReducedCompliance(NamedTuple):
         return self.instantaneous + float(np.sum(self.modes))
 
 
-class _Solid:
+class _Solid(ABC):
     """What every sample derives from its reduced compliance."""
 
     @property
+    @abstractmethod
     def reduced_compliance(self) -> ReducedCompliance:
         """Creep compliance of a half-space of this solid, 1/Pa and s."""
-        raise NotImplementedError
 
     @property
     def reduced_modulus_instantaneous(self) -> float:
