@@ -206,6 +206,17 @@ def test_a_write_protected_folder_and_file_are_refused(users_folder, softafm):
     assert "cannot write there" in line
 
 
+@posix
+def test_a_dangling_link_is_an_existing_output(folder, softafm):
+    (folder / "link.nc").symlink_to(folder / "gone.nc")
+    assert "exists" in refused(softafm("run", "ldpe-tapping.toml", "--out", "link.nc"))
+    assert softafm("run", "ldpe-tapping.toml", "--out", "result.nc")[0] == 0
+    result = sa.load(folder / "result.nc")
+    with pytest.raises(FileExistsError):
+        sa.save(result, folder / "link.nc")
+    assert (folder / "link.nc").is_symlink()
+
+
 def test_a_folder_or_a_wrong_suffix_is_no_output(folder, softafm):
     (folder / "folder.nc").mkdir()
     run = ("run", "ldpe-tapping.toml", "--force", "--out")

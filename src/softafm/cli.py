@@ -223,7 +223,7 @@ def _output(out: Path | None, default: str, suffixes: tuple[str, ...], force: bo
         raise ValueError(f"--out = {path}: must end in {' or '.join(suffixes)}")
     if path.exists() and not path.is_file():
         raise ValueError(f"--out = {path}: exists and is not a file")
-    if path.exists() and not force:
+    if os.path.lexists(path) and not force:
         raise ValueError(f"--out = {path}: exists; choose another name or add --force")
     if path.exists() and not os.access(path, os.W_OK):
         raise ValueError(f"--out = {path}: is write-protected")

@@ -189,7 +189,7 @@ def _write_csv(result, path):
 def _write(path, overwrite, write):
     """Let ``write`` fill a temporary file beside ``path``, then give it its name."""
     path = Path(path)
-    if path.exists() and not overwrite:
+    if os.path.lexists(path) and not overwrite:  # a dangling link is somebody's, too
         raise FileExistsError(f"{path}: exists already")
     handle, part = tempfile.mkstemp(prefix=f".{path.name}.", suffix=".part", dir=path.parent)
     os.close(handle)

@@ -9,6 +9,9 @@ stationarity of
 
 Memory is carried as displacements: q = K p and y_m = K w_m with τ_m ẏ_m = q − y_m, so that
 u = −(J_g q + Σ J_m y_m), and a change of frame is an interpolation of smooth fields.
+
+All of it stands in one file because numba's disk cache only notices changes of the file that a
+function is in.
 """
 
 from math import asinh, exp, floor, pi
