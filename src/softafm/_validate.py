@@ -24,6 +24,21 @@ def finite(name: str, value: float, unit: str) -> float:
     return number
 
 
+def whole(name: str, value: int, least: int, most: int) -> int:
+    """Return ``value`` if it is a whole number from ``least`` to ``most``."""
+    if isinstance(value, bool) or not isinstance(value, int) or not least <= value <= most:
+        raise ValueError(f"{name} = {value!r}: must be a whole number from {least} to {most}")
+    return value
+
+
+def one_of(name: str, value, choices: tuple):
+    """Return ``value`` if it is one of the choices."""
+    if not any(value is choice or (isinstance(value, str) and value == choice) for choice in choices):
+        valid = " or ".join(map(repr, choices))
+        raise ValueError(f"{name} = {value!r}: must be {valid}")
+    return value
+
+
 def poisson_ratio(value: float) -> float:
     """Return ``value`` if it lies in (-1, 0.5], the range of stable isotropic solids."""
     number = finite("poisson", value, "(no unit)")

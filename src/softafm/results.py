@@ -55,9 +55,10 @@ def variable(name: str, dims, values) -> "Variable":
 
 
 def describe(thing) -> dict:
-    """Return the kind and the parameters (SI) of a tip, sample, law, motion or solver."""
+    """Return the kind and the parameters (SI) of a tip, sample, law, motion, solver or stepper."""
     if is_dataclass(thing):
         values = {f.name: getattr(thing, f.name) for f in fields(thing)}
+        values = {name: describe(v) if is_dataclass(v) else v for name, v in values.items()}
     else:
         values = {"time": thing.time.tolist(), "height": thing.heights.tolist()}
     return {"kind": thing.kind, **values}

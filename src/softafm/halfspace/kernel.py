@@ -10,12 +10,17 @@ h Σ' ln|x_j| f_j + h ln(h/2π) f_0 up to O(h³).
 import numpy as np
 
 
-def kernel(r, s):
-    """k(r, s) of two arrays of unequal positive radii, in 1/(their unit)."""
+def kernel(r, s, distance=None):
+    """k(r, s) of two arrays of unequal positive radii, in 1/(their unit).
+
+    ``distance`` is |r − s|, for radii so close that their difference has lost its digits.
+    """
     from scipy.special import ellipkm1
 
     larger, smaller = np.maximum(r, s), np.minimum(r, s)
-    complement = (larger - smaller) * (larger + smaller) / larger**2
+    if distance is None:
+        distance = larger - smaller
+    complement = distance * (larger + smaller) / larger**2
     return 4 / (np.pi * larger) * ellipkm1(complement)
 
 

@@ -1,6 +1,18 @@
 """Solvers: each takes a contact and a motion and returns a ``History``."""
 
+from softafm.solvers.attard import Attard
 from softafm.solvers.energy import Energy
+from softafm.solvers.enhanced import EnhancedAttard
 from softafm.solvers.history import History, Profiles
+from softafm.solvers.stepping import AdamsBashforth, ForwardEuler, RungeKutta4
 
-__all__ = ["Energy", "History", "Profiles"]
+__all__ = [
+    "AdamsBashforth",
+    "Attard",
+    "Energy",
+    "EnhancedAttard",
+    "ForwardEuler",
+    "History",
+    "Profiles",
+    "RungeKutta4",
+]

@@ -1,7 +1,7 @@
-"""Small dense symmetric systems for compiled loops: factorise, solve, multiply.
+"""Small dense systems for compiled loops: factorise, solve, multiply.
 
-Written out by hand, as calls to LAPACK cost more than the work at the 25 to 80 unknowns of a
-contact.
+Written out by hand, as calls to LAPACK and BLAS cost more than the work at the 25 to 80 unknowns of
+a contact.
 """
 
 from math import sqrt
@@ -66,11 +66,109 @@ def solve_factorised(factor, x, n):
         x[i] = total * factor[i, i]
 
 
-@njit((_CONST2, _V, _V, int64), cache=True, fastmath=_FAST)
-def multiply(matrix, x, out, n):
+@njit((_CONST2, _V, _V), cache=True, fastmath=_FAST)
+def multiply(matrix, x, out):
     """out = matrix x."""
-    for i in range(n):
+    rows, columns = matrix.shape
+    for i in range(rows):
         total = 0.0
-        for j in range(n):
+        for j in range(columns):
             total += matrix[i, j] * x[j]
         out[i] = total
+
+
+@njit((_CONST2, _CONST2, _M), cache=True, fastmath=_FAST)
+def row_products(left, right, out):
+    """out = left rightᵀ: dot products of the rows of two matrices, in blocks of 2 by 4."""
+    rows, n = left.shape
+    columns = right.shape[0]
+    for i in range(0, rows, 2):
+        pair = min(i + 1, rows - 1)
+        j = 0
+        while j + 4 <= columns:
+            a0 = a1 = a2 = a3 = b0 = b1 = b2 = b3 = 0.0
+            for s in range(n):
+                x, y = left[i, s], left[pair, s]
+                r0, r1, r2, r3 = right[j, s], right[j + 1, s], right[j + 2, s], right[j + 3, s]
+                a0 += x * r0
+                a1 += x * r1
+                a2 += x * r2
+                a3 += x * r3
+                b0 += y * r0
+                b1 += y * r1
+                b2 += y * r2
+                b3 += y * r3
+            out[i, j], out[i, j + 1], out[i, j + 2], out[i, j + 3] = a0, a1, a2, a3
+            out[pair, j], out[pair, j + 1], out[pair, j + 2], out[pair, j + 3] = b0, b1, b2, b3
+            j += 4
+        while j < columns:
+            a0 = b0 = 0.0
+            for s in range(n):
+                a0 += left[i, s] * right[j, s]
+                b0 += left[pair, s] * right[j, s]
+            out[i, j], out[pair, j] = a0, b0
+            j += 1
+
+
+@njit(int64(_M, int64[::1]), cache=True, fastmath=_FAST)
+def factorise_general(matrix, pivots):
+    """LU of a square matrix in place, rows exchanged; returns the sign of the determinant.
+
+    The diagonal of U is inverted; ``pivots`` holds the exchanges. 0 if a pivot is 0 or NaN.
+    """
+    n = pivots.size
+    sign = 1
+    for k in range(0, n, 4):
+        end = min(k + 4, n)
+        for p in range(k, end):
+            best, chosen = abs(matrix[p, p]), p
+            for i in range(p + 1, n):
+                if abs(matrix[i, p]) > best:
+                    best, chosen = abs(matrix[i, p]), i
+            if not best > 0.0:
+                return 0
+            pivots[p] = chosen
+            if chosen != p:
+                sign = -sign
+                for j in range(n):
+                    matrix[p, j], matrix[chosen, j] = matrix[chosen, j], matrix[p, j]
+            if matrix[p, p] < 0.0:
+                sign = -sign
+            inverse = 1.0 / matrix[p, p]
+            matrix[p, p] = inverse
+            for i in range(p + 1, n):
+                f = matrix[i, p] * inverse
+                matrix[i, p] = f
+                for j in range(p + 1, end):
+                    matrix[i, j] -= f * matrix[p, j]
+        if end == n:
+            break
+        for p in range(k + 1, end):
+            for q in range(k, p):
+                f = matrix[p, q]
+                for j in range(end, n):
+                    matrix[p, j] -= f * matrix[q, j]
+        for i in range(end, n):
+            a0, a1, a2, a3 = matrix[i, k], matrix[i, k + 1], matrix[i, k + 2], matrix[i, k + 3]
+            for j in range(end, n):
+                x0, x1, x2, x3 = matrix[k, j], matrix[k + 1, j], matrix[k + 2, j], matrix[k + 3, j]
+                matrix[i, j] -= a0 * x0 + a1 * x1 + a2 * x2 + a3 * x3
+    return sign
+
+
+@njit((_M, int64[::1], _V), cache=True, fastmath=_FAST)
+def solve_general(factor, pivots, x):
+    """Overwrite ``x`` with the solution of a system factorised by ``factorise_general``."""
+    n = pivots.size
+    for i in range(n):
+        x[i], x[pivots[i]] = x[pivots[i]], x[i]
+    for i in range(n):
+        total = x[i]
+        for j in range(i):
+            total -= factor[i, j] * x[j]
+        x[i] = total
+    for i in range(n - 1, -1, -1):
+        total = x[i]
+        for j in range(i + 1, n):
+            total -= factor[i, j] * x[j]
+        x[i] = total * factor[i, i]

@@ -190,7 +190,7 @@ def equilibrate(u, v, ac, standoff, mesh, law, parameters, smallest_gap, accurac
         law(gap, parameters, pressure, slope, n)
         for i in range(n):
             u[i] -= v[i]
-        multiply(mesh.stiffness, u, change, n)
+        multiply(mesh.stiffness, u, change)
         for i in range(n):
             u[i] += v[i]
             change[i] = -(change[i] * scale + mesh.masses[i] * pressure[i])
@@ -238,7 +238,7 @@ def settle(u, v, ac, standoff, mesh, law, potential, parameters, accuracy):
             trial[i] = u[i] - v[i]
         law(gap, parameters, pressure, slope, n)
         potential(gap, parameters, density, n)
-        multiply(mesh.stiffness, trial, strain, n)
+        multiply(mesh.stiffness, trial, strain)
         value, steepest = 0.0, 0.0
         for i in range(n):
             value += 0.5 * trial[i] * strain[i] * scale + mesh.masses[i] * density[i]
@@ -268,7 +268,7 @@ def settle(u, v, ac, standoff, mesh, law, potential, parameters, accuracy):
                 gap[i] = standoff[i] - trial[i]
                 trial[i] -= v[i]
             potential(gap, parameters, density, n)
-            multiply(mesh.stiffness, trial, strain, n)
+            multiply(mesh.stiffness, trial, strain)
             lower = 0.0
             for i in range(n):
                 lower += 0.5 * trial[i] * strain[i] * scale + mesh.masses[i] * density[i]
@@ -545,7 +545,7 @@ def advance(
                 memory[m, i] += remember[m, _NEW] * load_new[i]
                 guess[i] = load_new[i] - memory[m, i]
                 fields[MEMORY + m, i] = memory[m, i]
-            multiply(mesh.stiffness, guess, scratch, n)
+            multiply(mesh.stiffness, guess, scratch)
             product = 0.0
             for i in range(n):
                 product += guess[i] * scratch[i]

@@ -1,0 +1,419 @@
+"""Compiled loops of the paper's solvers: rates of the surface, and fixed steps along them.
+
+All setups solve one equation for the rate of the surface displacement,
+
+    (I − J_g K P') u̇ = −R − ḣ0 J_g K p',     R = Σ_m (J_m/τ_m) (q − y_m),     q = K p,
+
+with P' = diag(p'(h)): Rajabifar et al. 2021, equation (14), for any Kelvin-Voigt chain. The memory
+y_m follows τ_m ẏ_m = q − y_m; that of the last mode is what is left of u = −(J_g q + Σ J_m y_m), so
+that a standard linear solid has no unknowns besides u. The setups differ in where the equation is
+posed (at nodes, or projected on functions) and in what u is written with:
+
+    u = carried·(h0 + g) + sign·Σ a_i f_i
+
+(carried 0 for an expanded deformation, 1 for an expanded gap). Lengths in m, pressures in Pa, times
+in s.
+"""
+
+from math import exp, pi
+from typing import NamedTuple
+
+import numpy as np
+from numba import boolean, float64, int64, njit, types
+
+from softafm.compiled import POTENTIAL, PRESSURE, pointer
+from softafm.solvers.dense import (
+    factorise,
+    factorise_general,
+    multiply,
+    row_products,
+    solve_factorised,
+    solve_general,
+)
+
+_FAST = {"reassoc", "contract", "nsz", "arcp"}
+_V = float64[::1]
+_M = float64[:, ::1]
+_CUBE = float64[:, :, ::1]
+_CONST = types.Array(float64, 1, "C", readonly=True)
+
+# How the rates are found: at nodes by fixed-point iteration or by a linear solve; for coefficients
+# by least squares over the nodes or by projection on orthogonal functions.
+ITERATIVE, NODAL, LEAST_SQUARES, ORTHOGONAL = range(4)
+
+# Why `march` came back.
+FINISHED, BLOWN_UP, NOT_CONVERGED = range(3)
+
+# Columns of a record.
+R_FORCE, R_EDGE, R_AXIS, R_LOSS = range(4)
+RECORD_WIDTH = 4
+
+# Entries of `counters`: instants reached in this piece of the motion, of these those with rates to
+# look back on, rates that were computed, iterations, and rates found beyond a fold.
+INSTANT, PAST, RATES, ITERATIONS, BEYOND_FOLD = range(5)
+COUNTERS = 5
+
+
+class Setup(NamedTuple):
+    """The discretised surface: n nodes, N unknowns, e equations.
+
+    ``influence`` (e, n) takes a pressure to q, m; ``shapes`` (N, n) are the functions at the nodes
+    (unused at nodes), ``unity`` and ``profile_image`` (e,) the constant 1 and the tip profile where
+    the equations are posed, ``profile`` (n,) at the nodes. ``area`` (n,) holds 2πr dr and ``rim``
+    the radius rd and the profile there. ``axis`` extrapolates to r = 0 from the first two nodes.
+    """
+
+    kind: int
+    carried: float
+    sign: float
+    influence: np.ndarray
+    shapes: np.ndarray
+    unity: np.ndarray
+    profile: np.ndarray
+    profile_image: np.ndarray
+    radius: np.ndarray
+    area: np.ndarray
+    rim: np.ndarray
+    axis: np.ndarray
+
+
+class Material(NamedTuple):
+    """Parameters of the surface law; J_g, J_1, ... in 1/Pa; τ_1, ... in s."""
+
+    law: np.ndarray
+    compliance: np.ndarray
+    retardation: np.ndarray
+
+
+class Controls(NamedTuple):
+    """Step, s; Runge-Kutta steps throughout or not; weights of past rates; the iteration's limits.
+
+    ``relaxation`` 0 stands for the largest that is sure to converge in repulsion.
+    """
+
+    step: float
+    always_runge_kutta: bool
+    weights: np.ndarray
+    tolerance: float
+    relaxation: float
+    most_iterations: int
+    gap_of_tension: float
+
+
+class Work(NamedTuple):
+    """Arrays that a run keeps between calls: the surface as last observed, and scratch."""
+
+    displacement: np.ndarray  # (n,)
+    gap: np.ndarray  # (n,)
+    pressure: np.ndarray  # (n,)
+    slope: np.ndarray  # (n,)
+    load: np.ndarray  # (e,)  q
+    pull: np.ndarray  # (e,)  K p'
+    creep: np.ndarray  # (modes, e)  (q − y_m)/τ_m
+    filtered: np.ndarray  # (modes, n)  w_m, the pressure filtered with τ_m
+    pressure_before: np.ndarray  # (n,)
+    step_before: np.ndarray  # (1,)
+    right: np.ndarray  # (e,)
+    solution: np.ndarray  # (e,)
+    scratch: np.ndarray  # (n,)
+    stiffened: np.ndarray  # (e, n)  −J_g K P'
+    matrix: np.ndarray  # (N, e)
+    normal: np.ndarray  # (N, N)
+    trial: np.ndarray  # (rows, e)
+    stages: np.ndarray  # (4, rows, e)
+    pivots: np.ndarray  # (e,) int
+
+
+SETUP = types.NamedTuple(
+    (int64, float64, float64, _M, _M, _V, _V, _V, _V, _V, _V, _V), Setup
+)
+MATERIAL = types.NamedUniTuple(_V, 3, Material)
+CONTROLS = types.NamedTuple(
+    (float64, boolean, _V, float64, float64, int64, float64), Controls
+)
+WORK = types.NamedTuple(
+    (_V, _V, _V, _V, _V, _V, _M, _M, _V, _V, _V, _V, _V, _M, _M, _M, _M, _CUBE, int64[::1]),
+    Work,
+)
+
+
+@njit(
+    boolean(SETUP, pointer(PRESSURE), MATERIAL, float64, _M, WORK), cache=True, fastmath=_FAST
+)
+def observe(setup, law, material, height, state, work):
+    """Gap and pressure of a state under a tip at ``height``; False if the surfaces interpenetrate."""
+    n = setup.profile.size
+    u, gap = work.displacement, work.gap
+    if setup.kind <= NODAL:
+        u[:] = state[0]
+    else:
+        for i in range(n):
+            u[i] = setup.carried * (height + setup.profile[i])
+        for j in range(setup.shapes.shape[0]):
+            coefficient = setup.sign * state[0, j]
+            for i in range(n):
+                u[i] += coefficient * setup.shapes[j, i]
+    for i in range(n):
+        gap[i] = height + setup.profile[i] - u[i]
+        if not gap[i] > 0.0:  # NaN, too
+            return False
+    law(gap, material.law, work.pressure, work.slope, n)
+    return True
+
+
+@njit(int64(SETUP, float64, CONTROLS, float64, _V, WORK, int64[::1]), cache=True, fastmath=_FAST)
+def _iterate(setup, instantaneous, controls, speed, guess, work, counters):
+    """Adjust the guessed rates until equation (10) holds: setup A.
+
+    v ← v + ω (right + J_g K (p' v) − v). The eigenvalues of I − J_g K P' lie between 0 and
+    1 + ‖J_g K p'‖ where the surface is stable.
+    """
+    n = guess.size
+    relaxation = controls.relaxation
+    if relaxation == 0.0:
+        for i in range(n):
+            work.scratch[i] = instantaneous * abs(work.slope[i])
+        multiply(setup.influence, work.scratch, work.solution)
+        relaxation = 2.0 / (2.0 + work.solution.max())
+    for i in range(n):
+        work.slope[i] *= instantaneous
+    for iteration in range(controls.most_iterations):
+        for i in range(n):
+            work.scratch[i] = work.slope[i] * guess[i]
+        multiply(setup.influence, work.scratch, work.solution)
+        largest, off = abs(speed), 0.0
+        for i in range(n):
+            miss = work.right[i] + work.solution[i] - guess[i]
+            guess[i] += relaxation * miss
+            off = max(off, abs(miss))
+            largest = max(largest, abs(guess[i]))
+        if off <= controls.tolerance * largest:
+            counters[ITERATIONS] += iteration + 1
+            return FINISHED
+        if not off < 1e300:
+            break
+    return NOT_CONVERGED
+
+
+@njit(
+    int64(SETUP, MATERIAL, CONTROLS, float64, float64, _M, _M, WORK, int64[::1]),
+    cache=True,
+    fastmath=_FAST,
+)
+def rates(setup, material, controls, height, speed, state, out, work, counters):
+    """Rates of the state last observed into ``out``, which holds the guess for an iteration."""
+    unknowns = setup.shapes.shape[0]
+    equations, n = setup.influence.shape
+    modes = material.retardation.size
+    instantaneous = material.compliance[0]
+    load, pull, right = work.load, work.pull, work.right
+    multiply(setup.influence, work.pressure, load)
+    multiply(setup.influence, work.slope, pull)
+
+    for i in range(equations):
+        right[i] = -setup.carried * speed * setup.unity[i]
+        right[i] -= (1.0 - setup.carried) * speed * instantaneous * pull[i]
+    if modes > 0:
+        last = work.creep[modes - 1]
+        share = material.compliance[modes]
+        for i in range(equations):
+            if setup.kind == ORTHOGONAL:
+                surface = setup.sign * state[0, i]
+                surface += setup.carried * (height * setup.unity[i] + setup.profile_image[i])
+            else:
+                surface = work.displacement[i]
+            last[i] = surface + (instantaneous + share) * load[i]
+        for m in range(modes - 1):
+            compliance, rate = material.compliance[m + 1], 1.0 / material.retardation[m]
+            creep, memory = work.creep[m], state[m + 1]
+            for i in range(equations):
+                creep[i] = rate * (load[i] - memory[i])
+                last[i] += compliance * memory[i]
+                right[i] -= compliance * creep[i]
+                out[m + 1, i] = creep[i]
+        rate = 1.0 / (share * material.retardation[modes - 1])
+        for i in range(equations):
+            last[i] *= rate
+            right[i] -= share * last[i]
+
+    counters[RATES] += 1
+    if setup.kind == ITERATIVE:
+        return _iterate(setup, instantaneous, controls, speed, out[0], work, counters)
+    for i in range(n):
+        work.scratch[i] = -instantaneous * work.slope[i]
+    for i in range(equations):
+        for j in range(n):
+            work.stiffened[i, j] = setup.influence[i, j] * work.scratch[j]
+    if setup.kind == LEAST_SQUARES:
+        # Columns of I − J_g K P' in rows, applied to every function.
+        row_products(setup.shapes, work.stiffened, work.matrix)
+        for j in range(unknowns):
+            for i in range(equations):
+                work.matrix[j, i] += setup.shapes[j, i]
+        row_products(work.matrix, work.matrix, work.normal)
+        multiply(work.matrix, right, work.solution)
+        if not factorise(work.normal, unknowns):
+            return BLOWN_UP
+        solve_factorised(work.normal, work.solution, unknowns)
+    else:
+        matrix = work.stiffened
+        if setup.kind == ORTHOGONAL:
+            row_products(work.stiffened, setup.shapes, work.matrix)
+            matrix = work.matrix
+        for i in range(equations):
+            matrix[i, i] += 1.0
+        sign = factorise_general(matrix, work.pivots)
+        if sign == 0:
+            return BLOWN_UP
+        if sign < 0:
+            counters[BEYOND_FOLD] += 1
+        work.solution[:] = right
+        solve_general(matrix, work.pivots, work.solution)
+    for j in range(unknowns):
+        out[0, j] = setup.sign * work.solution[j]
+    return FINISHED
+
+
+@njit(
+    (SETUP, pointer(POTENTIAL), MATERIAL, CONTROLS, float64, WORK, _V), cache=True, fastmath=_FAST
+)
+def note(setup, potential, material, controls, height, work, record):
+    """Write force, contact radius, axis deformation and viscous power of a surface with rates.
+
+    The flat surface beyond the domain adds its share to the force as for a paraboloid, for which
+    r dr = (r²/2g) dh and the integral of p is the potential Φ.
+    """
+    n = work.gap.size
+    total = 0.0
+    for i in range(n):
+        total += setup.area[i] * work.pressure[i]
+    rim, profile = setup.rim[0], setup.rim[1]
+    work.scratch[0] = height + profile - work.displacement[n - 1]
+    potential(work.scratch, material.law, work.scratch, 1)
+    record[R_FORCE] = total + pi * rim * rim / profile * work.scratch[0]
+    record[R_AXIS] = setup.axis[0] * work.displacement[0] + setup.axis[1] * work.displacement[1]
+
+    record[R_EDGE] = 0.0
+    if work.gap[0] < controls.gap_of_tension:
+        i = 1
+        while i < n - 1 and work.gap[i] < controls.gap_of_tension:
+            i += 1
+        inner, outer = work.gap[i - 1], work.gap[i]
+        part = (controls.gap_of_tension - inner) / (outer - inner)
+        r0, r1 = setup.radius[i - 1], setup.radius[i]
+        record[R_EDGE] = r0 + min(part, 1.0) * (r1 - r0)
+
+    loss = 0.0
+    for m in range(material.retardation.size):
+        creep = work.creep[m]
+        for i in range(n):
+            rate = creep[i]
+            if setup.kind == ORTHOGONAL:
+                rate = 0.0
+                for j in range(creep.size):
+                    rate += setup.shapes[j, i] * creep[j]
+            force = setup.area[i] * (work.pressure[i] - work.filtered[m, i])
+            loss += material.compliance[m + 1] * force * rate
+    record[R_LOSS] = loss
+
+
+@njit((MATERIAL, WORK), cache=True, fastmath=_FAST)
+def filter_pressure(material, work):
+    """Carry w_m, τ_m ẇ_m = p − w_m, over the last step, the pressure linear in time."""
+    step = work.step_before[0]
+    for m in range(material.retardation.size):
+        k = step / material.retardation[m]
+        decay = exp(-k)
+        if k < 1e-4:
+            mean = 1.0 - k / 2.0 + k * k / 6.0
+        else:
+            mean = (1.0 - decay) / k
+        filtered = work.filtered[m]
+        for i in range(filtered.size):
+            filtered[i] = (
+                decay * filtered[i]
+                + (mean - decay) * work.pressure_before[i]
+                + (1.0 - mean) * work.pressure[i]
+            )
+
+
+@njit(
+    int64(
+        SETUP, pointer(PRESSURE), pointer(POTENTIAL), MATERIAL, CONTROLS,
+        _CONST, _CONST, int64, _M, _CUBE, WORK, _M, _M, int64[::1],
+    ),
+    cache=True,
+    fastmath=_FAST,
+)  # fmt: skip
+def march(
+    setup, law, potential, material, controls,
+    heights, speeds, stop, state, past, work, records, shapes, counters,
+):  # fmt: skip
+    """Step through a piece of the motion from instant ``counters[INSTANT]`` to before ``stop``.
+
+    ``heights`` and ``speeds`` hold h0 and ḣ0 at instants and midpoints. ``state`` (rows, e) is
+    advanced in place; ``past`` (rates, rows, e) is a ring of past rates. Row i of ``records`` and,
+    if there is one, of ``shapes`` takes instant i of the piece.
+    """
+    order = controls.weights.size
+    ring = past.shape[0]
+    rows, width = state.shape
+    instants = heights.size // 2
+    while counters[INSTANT] < stop:
+        instant = counters[INSTANT]
+        height = heights[2 * instant]
+        if not observe(setup, law, material, height, state, work):
+            return BLOWN_UP
+        filter_pressure(material, work)
+        work.pressure_before[:] = work.pressure
+        now = past[instant % ring]
+        now[:] = past[(instant - 1) % ring]
+        outcome = rates(
+            setup, material, controls, height, speeds[2 * instant], state, now, work, counters
+        )
+        if outcome != FINISHED:
+            return outcome
+        note(setup, potential, material, controls, height, work, records[instant])
+        if shapes.shape[0] > 0:
+            shapes[instant] = work.displacement
+        counters[PAST] += 1
+        counters[INSTANT] += 1
+        if instant == instants:
+            break
+        work.step_before[0] = controls.step
+
+        if controls.always_runge_kutta or counters[PAST] < order:
+            stages = work.stages
+            stages[0] = now
+            for stage in range(1, 4):
+                part = 0.5 if stage < 3 else 1.0
+                for row in range(rows):
+                    for i in range(width):
+                        work.trial[row, i] = (
+                            state[row, i] + part * controls.step * stages[stage - 1, row, i]
+                        )
+                at = 2 * instant + (1 if stage < 3 else 2)
+                if not observe(setup, law, material, heights[at], work.trial, work):
+                    return BLOWN_UP
+                stages[stage] = stages[stage - 1]
+                outcome = rates(
+                    setup, material, controls, heights[at], speeds[at],
+                    work.trial, stages[stage], work, counters,
+                )  # fmt: skip
+                if outcome != FINISHED:
+                    return outcome
+            for row in range(rows):
+                for i in range(width):
+                    state[row, i] += (controls.step / 6.0) * (
+                        stages[0, row, i]
+                        + 2.0 * (stages[1, row, i] + stages[2, row, i])
+                        + stages[3, row, i]
+                    )
+        else:
+            for back in range(order):
+                weight = controls.step * controls.weights[back]
+                rate = past[(instant - back) % ring]
+                for row in range(rows):
+                    for i in range(width):
+                        state[row, i] += weight * rate[row, i]
+    return FINISHED
