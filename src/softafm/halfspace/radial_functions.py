@@ -100,6 +100,7 @@ def responses(basis: str, count: int, radii: tuple[float, ...]) -> np.ndarray:
     return result
 
 
+@lru_cache(maxsize=8)
 def _gauss(count: int) -> tuple[np.ndarray, np.ndarray]:
     points, weights = np.polynomial.legendre.leggauss(count)
     return (points + 1) / 2, weights / 2

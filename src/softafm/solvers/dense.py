@@ -148,7 +148,17 @@ def factorise_general(matrix, pivots):
                 f = matrix[p, q]
                 for j in range(end, n):
                     matrix[p, j] -= f * matrix[q, j]
-        for i in range(end, n):
+        i = end
+        while i + 2 <= n:
+            a0, a1, a2, a3 = matrix[i, k], matrix[i, k + 1], matrix[i, k + 2], matrix[i, k + 3]
+            b0, b1 = matrix[i + 1, k], matrix[i + 1, k + 1]
+            b2, b3 = matrix[i + 1, k + 2], matrix[i + 1, k + 3]
+            for j in range(end, n):
+                x0, x1, x2, x3 = matrix[k, j], matrix[k + 1, j], matrix[k + 2, j], matrix[k + 3, j]
+                matrix[i, j] -= a0 * x0 + a1 * x1 + a2 * x2 + a3 * x3
+                matrix[i + 1, j] -= b0 * x0 + b1 * x1 + b2 * x2 + b3 * x3
+            i += 2
+        if i < n:
             a0, a1, a2, a3 = matrix[i, k], matrix[i, k + 1], matrix[i, k + 2], matrix[i, k + 3]
             for j in range(end, n):
                 x0, x1, x2, x3 = matrix[k, j], matrix[k + 1, j], matrix[k + 2, j], matrix[k + 3, j]

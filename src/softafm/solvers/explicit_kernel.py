@@ -88,7 +88,8 @@ class Material(NamedTuple):
 class Controls(NamedTuple):
     """Step, s; Runge-Kutta steps throughout or not; weights of past rates; the iteration's limits.
 
-    ``relaxation`` 0 stands for the largest that is sure to converge in repulsion.
+    ``relaxation`` 0 stands for the largest that is sure to converge in repulsion; a surface under
+    more than ``largest_pressure`` has blown up.
     """
 
     step: float
@@ -98,6 +99,7 @@ class Controls(NamedTuple):
     relaxation: float
     most_iterations: int
     gap_of_tension: float
+    largest_pressure: float
 
 
 class Work(NamedTuple):
@@ -129,7 +131,7 @@ SETUP = types.NamedTuple(
 )
 MATERIAL = types.NamedUniTuple(_V, 3, Material)
 CONTROLS = types.NamedTuple(
-    (float64, boolean, _V, float64, float64, int64, float64), Controls
+    (float64, boolean, _V, float64, float64, int64, float64, float64), Controls
 )
 WORK = types.NamedTuple(
     (_V, _V, _V, _V, _V, _V, _M, _M, _V, _V, _V, _V, _V, _M, _M, _M, _M, _CUBE, int64[::1]),
@@ -138,10 +140,13 @@ WORK = types.NamedTuple(
 
 
 @njit(
-    boolean(SETUP, pointer(PRESSURE), MATERIAL, float64, _M, WORK), cache=True, fastmath=_FAST
+    boolean(SETUP, pointer(PRESSURE), MATERIAL, CONTROLS, float64, _M, WORK),
+    cache=True,
+    fastmath=_FAST,
 )
-def observe(setup, law, material, height, state, work):
-    """Gap and pressure of a state under a tip at ``height``; False if the surfaces interpenetrate."""
+def observe(setup, law, material, controls, height, state, work):
+    """Find gap and pressure of a state; False if the tip is in the surface or the pressure absurd.
+    """
     n = setup.profile.size
     u, gap = work.displacement, work.gap
     if setup.kind <= NODAL:
@@ -158,7 +163,7 @@ def observe(setup, law, material, height, state, work):
         if not gap[i] > 0.0:  # NaN, too
             return False
     law(gap, material.law, work.pressure, work.slope, n)
-    return True
+    return work.pressure.max() <= controls.largest_pressure
 
 
 @njit(int64(SETUP, float64, CONTROLS, float64, _V, WORK, int64[::1]), cache=True, fastmath=_FAST)
@@ -305,15 +310,16 @@ def note(setup, potential, material, controls, height, work, record):
 
     loss = 0.0
     for m in range(material.retardation.size):
-        creep = work.creep[m]
         for i in range(n):
-            rate = creep[i]
-            if setup.kind == ORTHOGONAL:
-                rate = 0.0
-                for j in range(creep.size):
-                    rate += setup.shapes[j, i] * creep[j]
-            force = setup.area[i] * (work.pressure[i] - work.filtered[m, i])
-            loss += material.compliance[m + 1] * force * rate
+            work.scratch[i] = setup.area[i] * (work.pressure[i] - work.filtered[m, i])
+        force = work.scratch
+        if setup.kind == ORTHOGONAL:
+            multiply(setup.shapes, work.scratch, work.solution)
+            force = work.solution
+        rate = 0.0
+        for i in range(force.size):
+            rate += force[i] * work.creep[m, i]
+        loss += material.compliance[m + 1] * rate
     record[R_LOSS] = loss
 
 
@@ -362,7 +368,7 @@ def march(
     while counters[INSTANT] < stop:
         instant = counters[INSTANT]
         height = heights[2 * instant]
-        if not observe(setup, law, material, height, state, work):
+        if not observe(setup, law, material, controls, height, state, work):
             return BLOWN_UP
         filter_pressure(material, work)
         work.pressure_before[:] = work.pressure
@@ -393,7 +399,9 @@ def march(
                             state[row, i] + part * controls.step * stages[stage - 1, row, i]
                         )
                 at = 2 * instant + (1 if stage < 3 else 2)
-                if not observe(setup, law, material, heights[at], work.trial, work):
+                if not observe(
+                    setup, law, material, controls, heights[at], work.trial, work
+                ):
                     return BLOWN_UP
                 stages[stage] = stages[stage - 1]
                 outcome = rates(

@@ -94,6 +94,7 @@ class _Run:
             np.array(creep.retardation_times, float),
         )
         self.gap_of_tension = contact.surface.gap_of_largest_tension
+        self.largest_pressure = _largest_pressure(contact, *self.setup.rim)
         self.iteration = iteration
         self.pieces = list(_pieces(motion, solver.steps))
         modes = creep.retardation_times.size
@@ -139,6 +140,7 @@ class _Run:
             relaxation=self.iteration.relaxation,
             most_iterations=self.iteration.most,
             gap_of_tension=self.gap_of_tension,
+            largest_pressure=self.largest_pressure,
         )
 
     def _give_up(self, outcome, piece):
@@ -154,9 +156,9 @@ class _Run:
             )
         else:
             reason = (
-                f"blew up at {where}: the surface ran into the tip or its rates are not finite. "
-                "More steps help if they are too long; an elastic instability needs "
-                "solvers.Energy()"
+                f"blew up at {where}: the surface ran into the tip, or its pressure or rates are "
+                "beyond bounds. More steps help if they are too long; an elastic instability "
+                "needs solvers.Energy()"
             )
         raise DivergedError(reason, self.history(0.0))
 
@@ -207,6 +209,18 @@ class _Run:
                 f"the contact reaches to {edge:.3g} m, the rim of the domain of {domain:.3g} m: "
                 "choose a larger domain"
             )
+
+
+def _largest_pressure(contact, domain: float, profile: float) -> float:
+    """Return a pressure that no contact within the domain reaches, Pa.
+
+    Twice the peak of a Hertz contact that fills the domain at the instantaneous modulus, and the
+    largest tension; contacts that did not blow up stayed below a quarter of it.
+    """
+    slope = 2 * profile / domain
+    hertz = 2 / np.pi * slope / contact.sample.reduced_compliance.instantaneous
+    surface = contact.surface
+    return 2 * float(hertz - surface.pressure(surface.gap_of_largest_tension))
 
 
 def _pieces(motion, steps: int):

@@ -94,12 +94,13 @@ def cubic(time, values, at):
     count = min(4, time.size)
     first = np.clip(np.searchsorted(time, at.mean(axis=1)) - 2, 0, time.size - count)
     nodes = first[:, None] + np.arange(count)
+    offsets = [at - time[column, None] for column in nodes.T]
     result = np.zeros(at.shape)
     for j in range(count):
-        basis = values[nodes[:, j], None]
-        for other in range(count):
-            if other != j:
-                near, far = time[nodes[:, j], None], time[nodes[:, other], None]
-                basis = basis * (at - far) / (near - far)
+        others = [other for other in range(count) if other != j]
+        scale = np.prod([time[nodes[:, j]] - time[nodes[:, other]] for other in others], axis=0)
+        basis = (values[nodes[:, j]] / scale)[:, None]
+        for other in others:
+            basis = basis * offsets[other]
         result += basis
     return result
