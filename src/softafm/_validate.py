@@ -33,7 +33,9 @@ def whole(name: str, value: int, least: int, most: int) -> int:
 
 def one_of(name: str, value, choices: tuple):
     """Return ``value`` if it is one of the choices."""
-    if not any(value is choice or (isinstance(value, str) and value == choice) for choice in choices):
+    if not any(
+        value is choice or (isinstance(value, str) and value == choice) for choice in choices
+    ):
         valid = " or ".join(map(repr, choices))
         raise ValueError(f"{name} = {value!r}: must be {valid}")
     return value

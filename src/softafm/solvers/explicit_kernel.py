@@ -126,9 +126,7 @@ class Work(NamedTuple):
     pivots: np.ndarray  # (e,) int
 
 
-SETUP = types.NamedTuple(
-    (int64, float64, float64, _M, _M, _V, _V, _V, _V, _V, _V, _V), Setup
-)
+SETUP = types.NamedTuple((int64, float64, float64, _M, _M, _V, _V, _V, _V, _V, _V, _V), Setup)
 MATERIAL = types.NamedUniTuple(_V, 3, Material)
 CONTROLS = types.NamedTuple(
     (float64, boolean, _V, float64, float64, int64, float64, float64), Controls
@@ -145,8 +143,7 @@ WORK = types.NamedTuple(
     fastmath=_FAST,
 )
 def observe(setup, law, material, controls, height, state, work):
-    """Find gap and pressure of a state; False if the tip is in the surface or the pressure absurd.
-    """
+    """Find gap and pressure of a state; False if the tip is in the surface or the pressure absurd."""
     n = setup.profile.size
     u, gap = work.displacement, work.gap
     if setup.kind <= NODAL:
@@ -399,9 +396,7 @@ def march(
                             state[row, i] + part * controls.step * stages[stage - 1, row, i]
                         )
                 at = 2 * instant + (1 if stage < 3 else 2)
-                if not observe(
-                    setup, law, material, controls, heights[at], work.trial, work
-                ):
+                if not observe(setup, law, material, controls, heights[at], work.trial, work):
                     return BLOWN_UP
                 stages[stage] = stages[stage - 1]
                 outcome = rates(
