@@ -4,19 +4,30 @@ Rajabifar, Wagner and Raman 2021 is "the paper"; its setups A to G are those of 
 """
 
 import csv
+import json
 import warnings
-from collections.abc import Callable, Iterable
-from dataclasses import dataclass
+from collections.abc import Callable, Iterable, Iterator
+from dataclasses import dataclass, field
 from pathlib import Path
 from time import perf_counter
+from typing import NamedTuple
 
 import numpy as np
+import rich
 from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
+from rich.table import Table
 
 import softafm as sa
 from softafm import solvers
+from softafm.plotting import COLOURS
 
-OUTPUT = Path(__file__).parents[1] / "paper-output"
+ROOT = Path(__file__).parents[1]
+OUTPUT = ROOT / "paper-output"
+
+SETUP_COLOURS = dict(zip("CDEFGBA", (*COLOURS[:5], COLOURS[6], COLOURS[5]), strict=True))
+"""One colour a setup, the same in all figures."""
 
 LDPE = sa.Contact(
     sa.Paraboloid(radius=10e-9),
@@ -28,12 +39,38 @@ LDPE = sa.Contact(
 DEEP_TAP = sa.Sine(mean_height=42.82e-9, amplitude=49.6e-9, frequency=278e3, cycles=1)
 """A tap at A0 = 62 nm and setpoint 0.8, as in the paper's Figs. 5 to 7; it crosses a fold."""
 
+END = {"marker": "X", "markersize": 8, "markeredgecolor": "white", "linestyle": "none"}
+END_ENTRY = Line2D([], [], color="0.2", label="stopped", **END)
+"""Mark in figures, and its entry in a legend, of where a run stopped."""
+
 DOMAIN = 12e-9
 """Radius of the computational domain of that tap, m."""
 
 
+class TapCase(NamedTuple):
+    """A tap of the tests' reference cases and its converged observables."""
+
+    contact: sa.Contact
+    motion: sa.Sine
+    converged: dict[str, float]
+
+
+def tap_case(name: str) -> TapCase:
+    """Look up one cycle of tapping in ``tests/data/cases.json``."""
+    cases = json.loads((ROOT / "tests" / "data" / "cases.json").read_text(encoding="utf-8"))
+    case = next(case for case in cases if case["name"] == name)
+    given = case["inputs"]
+    contact = sa.Contact(
+        sa.Paraboloid(given["radius"]),
+        sa.StandardLinearSolid(given["E0"], given["E_inf"], given["tau"], given["poisson"]),
+        sa.LennardJones(given["hamaker"], given["z0"]),
+    )
+    motion = sa.Sine(given["mean_height"], given["amplitude"], given["frequency"], cycles=1)
+    return TapCase(contact, motion, {k: v["value"] for k, v in case["expected"].items()})
+
+
 def setup(letter: str, **options):
-    """The solver of one of the setups A to G, with two-step Adams-Bashforth unless told otherwise."""
+    """The solver of one of the setups A to G, with two-step Adams-Bashforth by default."""
     options = {"stepper": solvers.AdamsBashforth(2), **options}
     if letter in "AB":
         return solvers.Attard(method="iterative" if letter == "A" else "explicit", **options)
@@ -57,10 +94,16 @@ class Outcome:
     ending: str
     """``"completed"``, or why and where it stopped."""
     warned: bool
+    attributes: dict = field(default_factory=dict)
+    """Attributes of the result, such as ``solver_steps``; none of a run that stopped."""
 
     @property
     def completed(self) -> bool:
         return self.ending == "completed"
+
+    def error(self, name: str, converged: dict[str, float]) -> float:
+        """Deviation of an observable in per cent; NaN of a run that stopped."""
+        return 100 * (self.observables.get(name, np.nan) / converged[name] - 1)
 
 
 def attempt(run: Callable) -> Outcome:
@@ -82,7 +125,7 @@ def attempt(run: Callable) -> Outcome:
     scalars = {str(name): float(v) for name, v in result.data_vars.items() if v.ndim == 0}
     return Outcome(
         result["time"].values, result["tip_height"].values, result["force"].values,
-        scalars, seconds, "completed", bool(caught),
+        scalars, seconds, "completed", bool(caught), dict(result.attrs),
     )  # fmt: skip
 
 
@@ -92,9 +135,64 @@ def tap(contact: sa.Contact, motion: sa.Sine, solver=None, **options) -> Outcome
     return attempt(lambda: sa.tapping_cycle(contact, *at, solver=solver, **options))
 
 
+def converged_tap(contact: sa.Contact, motion: sa.Sine) -> dict[str, float]:
+    """Observables of a tap from the default solver at a tolerance of 1e-4."""
+    return tap(contact, motion, tolerance=1e-4).observables
+
+
 def force_curve(contact: sa.Contact, motion, solver=None, **options) -> Outcome:
     """One force-distance curve."""
     return attempt(lambda: sa.force_distance(contact, motion, solver=solver, **options))
+
+
+def tracked(jobs: Iterable, progress: Callable | None, message: Callable) -> Iterator:
+    """Yield jobs, telling the fraction done and ``message(job)`` before each."""
+    jobs = list(jobs)
+    for done, job in enumerate(jobs):
+        if progress is not None:
+            progress(done / len(jobs), message(job))
+        yield job
+    if progress is not None:
+        progress(1.0, "done")
+
+
+def run(*scripts: Callable) -> None:
+    """Run the ``main`` of scripts one after the other, with a live bar for each."""
+    columns = "{task.fields[name]:16}", BarColumn(30), TimeElapsedColumn(), "{task.description}"
+    bars = Progress(*(TextColumn(c) if isinstance(c, str) else c for c in columns))
+    with bars:
+        for script in scripts:
+            bar = bars.add_task("", total=1.0, name=Path(script.__code__.co_filename).stem)
+            script(lambda done, doing, bar=bar: bars.update(bar, completed=done, description=doing))
+    rich.print(f"Tables and figures are in {OUTPUT}")
+
+
+def warm_up() -> None:
+    """Load or compile the solvers, so that the time of no run includes it."""
+    tap(LDPE, DEEP_TAP, tolerance=0.1)
+    tap(LDPE, DEEP_TAP, setup("B", steps=10))
+
+
+def show(title: str, header: Iterable[str], rows: Iterable[Iterable]) -> None:
+    """Print a table; floats with three digits."""
+    table = Table(*header, title=title, title_justify="left")
+    for row in rows:
+        table.add_row(*(f"{x:.3g}" if isinstance(x, float) else str(x) for x in row))
+    rich.print(table)
+
+
+def panels(rows: int, columns: int, height: float, **options) -> tuple[Figure, np.ndarray]:
+    """A figure 9 inches wide with a flat array of axes whose ticks point inwards."""
+    figure = Figure(figsize=(9.0, height), layout="constrained")
+    axes = figure.subplots(rows, columns, squeeze=False, **options).ravel()
+    for ax in axes:
+        ax.tick_params(which="both", direction="in", top=True, right=True)
+    return figure, axes
+
+
+def mark_end(ax, x: np.ndarray, y: np.ndarray, colour) -> None:
+    """Put a cross on the last point of a curve that stopped."""
+    ax.plot(x[-1:], y[-1:], color=colour, zorder=5, **END)
 
 
 def write_csv(name: str, header: Iterable[str], rows: Iterable[Iterable]) -> Path:

@@ -1,5 +1,8 @@
 """Compile before the first test, so that no test sees the compiler at work."""
 
+import json
+from pathlib import Path
+
 import pytest
 
 
@@ -8,3 +11,10 @@ def compiled_solver():
     import softafm.solvers.energy_run
 
     return softafm.solvers.energy_run
+
+
+@pytest.fixture(scope="session")
+def reference_cases():
+    """Converged results of independent solvers by name (see data/README.md)."""
+    cases = json.loads((Path(__file__).parent / "data" / "cases.json").read_text())
+    return {case["name"]: case for case in cases}

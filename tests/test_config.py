@@ -1,6 +1,7 @@
 """Experiment files: what they mean, and that nothing wrong in them passes or crashes."""
 
 import contextlib
+import dataclasses
 import json
 import math
 import os
@@ -183,6 +184,70 @@ def test_a_solver_takes_its_own_parameters(load):
     assert refusal(load, {**TAP, "solver": {"name": "energy", "most_steps": "many"}}).startswith(
         "solver.most_steps = 'many': "
     )
+
+
+ATTARD = {"name": "attard"}
+ENHANCED = {"name": "enhanced-attard"}
+SOLVERS = [sa.solvers.Energy, sa.solvers.Attard, sa.solvers.EnhancedAttard]
+
+
+@pytest.mark.parametrize(
+    ("table", "solver"),
+    [
+        (ATTARD, sa.solvers.Attard()),
+        (
+            {
+                **ATTARD,
+                "nodes": 35,
+                "domain": "12 nm",
+                "method": "explicit",
+                "steps": 500,
+                "stepper": "runge-kutta-4",
+                "iteration_tolerance": 1e-4,
+                "relaxation": 1,
+                "most_iterations": 7,
+            },
+            sa.solvers.Attard(
+                35, 12e-9, "explicit", 500, sa.solvers.RungeKutta4(), 1e-4, 1.0, 7
+            ),
+        ),
+        (ENHANCED, sa.solvers.EnhancedAttard()),
+        (
+            {
+                **ENHANCED,
+                "functions": 12,
+                "nodes": 35,
+                "basis": "bessel",
+                "expand": "bounded-gap",
+                "orthogonal": False,
+                "domain": "0.1 um",
+                "quadrature": "midpoint",
+                "steps": 500,
+                "stepper": "forward-euler",
+            },
+            sa.solvers.EnhancedAttard(
+                *(12, 35, "bessel", "bounded-gap", False, 1e-7, "midpoint", 500),
+                sa.solvers.ForwardEuler(),
+            ),
+        ),
+    ],
+)  # fmt: skip
+def test_the_papers_solvers_take_all_their_parameters(load, table, solver):
+    experiment = load({**TAP, "solver": table})
+    assert experiment.solver == solver
+    assert experiment.tolerance == 1e-2
+
+
+@pytest.mark.parametrize("order", [1, 2, 3, 4, 5])
+def test_steppers_are_named_with_their_order(load, order):
+    solver = load({**TAP, "solver": ATTARD}, f"solver.stepper=adams-bashforth-{order}").solver
+    assert solver.stepper == sa.solvers.AdamsBashforth(order)
+
+
+def test_every_parameter_of_every_solver_is_a_key(load):
+    for solver in SOLVERS:
+        line = refusal(load, {**TAP, "solver": {"name": solver.kind, "x": 1}})
+        assert all(f"'{field.name}'" in line for field in dataclasses.fields(solver))
 
 
 def test_overrides_replace_and_add(load):
@@ -404,6 +469,82 @@ def test_missing_and_malformed_tables(load, table):
 )
 def test_refusals_read_well(load, override, line):
     assert refusal(load, TAP, override).startswith(line)
+
+
+WHOLE = "must be a whole number"
+
+
+@pytest.mark.parametrize(
+    ("solver", "override", "line"),
+    [
+        (ATTARD, "nodes=1", "nodes = 1: must be a whole number from 2 to 2000"),
+        (ATTARD, "nodes=true", f"nodes = True: {WHOLE}"),
+        (ATTARD, "nodes=70.0", f"nodes = 70.0: {WHOLE}"),
+        (ATTARD, "nodes='70'", f"nodes = '70': {WHOLE}"),
+        (ATTARD, "steps=0", "steps = 0: must be a whole number from 1 to 100000000"),
+        (ATTARD, "steps=0x" + "f" * 9000, f"steps = (a int too long to show): {WHOLE}"),
+        (ATTARD, "domain=12", "domain = 12: must be a length with its unit, such as '10 nm'; the"),
+        (ATTARD, "domain=12 s", "domain = '12 s': must be a length with its unit, such as '10 nm'"),
+        (ATTARD, "domain=-12 nm", "domain = '-12 nm': must be greater than 0"),
+        (ATTARD, "method=implicit", "method = 'implicit': must be 'iterative' or 'explicit'"),
+        (ATTARD, "method=1", "method = 1: must be 'iterative' or 'explicit'"),
+        (ATTARD, "stepper=adams-bashforth", "stepper = 'adams-bashforth': must be 'forward-euler'"),
+        (ATTARD, "stepper=adams-bashforth-6", "stepper = 'adams-bashforth-6': must be 'forward-e"),
+        (ATTARD, "stepper=4", "stepper = 4: must be 'forward-euler', 'adams-bashforth-1', "),
+        (ATTARD, "stepper=[4]", "stepper = [4]: must be 'forward-euler', 'adams-bashforth-1', "),
+        (ATTARD, "relaxation=2", "relaxation = 2: must be at most 1"),
+        (ATTARD, "relaxation=0", "relaxation = 0: must be greater than 0"),
+        (ATTARD, "relaxation=1%", "relaxation = '1%': must be a plain number"),
+        (ATTARD, "iteration_tolerance=nan", "iteration_tolerance = nan: must be a finite number"),
+        (ATTARD, "functions=25", "functions: unknown key; must be 'nodes', 'domain', 'method'"),
+        (ENHANCED, "functions=80", "functions = 80: must be a whole number from 1 to 70"),
+        (ENHANCED, "basis=sine", "basis = 'sine': must be 'cosine' or 'bessel'"),
+        (ENHANCED, "expand=h", "expand = 'h': must be 'deformation', 'gap' or 'bounded-gap'"),
+        (ENHANCED, "orthogonal=1", "orthogonal = 1: must be true or false"),
+        (ENHANCED, "orthogonal=yes", "orthogonal = 'yes': must be true or false"),
+        (ENHANCED, "quadrature=gauss", "quadrature = 'gauss': must be 'trapezoid' or 'midpoint'"),
+    ],
+)
+def test_bad_parameters_of_the_papers_solvers(load, solver, override, line):
+    found = refusal(load, {**TAP, "solver": solver}, f"solver.{override}")
+    assert found.startswith(f"solver.{line}")
+
+
+def test_fewer_nodes_than_functions_are_refused_though_only_one_is_written(load):
+    line = refusal(load, {**TAP, "solver": {**ENHANCED, "nodes": 20}})
+    assert line == "solver: functions = 25: must be a whole number from 1 to 20"
+
+
+@given(
+    st.sampled_from(SOLVERS).flatmap(
+        lambda solver: st.tuples(
+            st.just(solver.kind),
+            st.sampled_from([field.name for field in dataclasses.fields(solver)]),
+        )
+    ),
+    anything,
+)
+@few
+def test_garbage_parameters_of_solvers(load, parameter, value):
+    name, key = parameter
+    document = {**TAP, "solver": {"name": name, key: value}}
+    try:
+        load(document)
+    except ConfigError:
+        assert refusal(load, document).startswith("solver")
+
+
+@pytest.mark.parametrize("solver", [ATTARD, ENHANCED])
+def test_fixed_steps_refuse_a_written_tolerance(load, solver):
+    document = {**TAP, "solver": solver}
+    line = refusal(load, {**document, "run": {"tolerance": 1e-2}})
+    assert line == (
+        f"run.tolerance = 0.01: the solver '{solver['name']}' takes fixed steps, which no "
+        "tolerance changes; leave it out and use solver.steps"
+    )
+    assert refusal(load, document, "run.tolerance=1e-3").startswith("run.tolerance = 0.001: the so")
+    assert refusal(load, document, "run.tolerance=1").startswith("run.tolerance = 1: must be betw")
+    assert load({**document, "run": {"profiles": True}}).profiles is True
 
 
 @pytest.mark.parametrize(

@@ -9,7 +9,6 @@ from scipy.interpolate import CubicSpline
 
 import softafm as sa
 from softafm.halfspace.mesh import node_index, unit_mesh
-from softafm.solvers import dense
 from softafm.solvers import energy_kernel as k
 
 R, W, Z0 = 10e-9, 0.05, 0.3e-9
@@ -17,47 +16,6 @@ LAW = sa.LennardJones.from_work_of_adhesion(W, Z0)
 TIP = sa.Paraboloid(R)
 FRAME = 1.5 * np.sqrt(R * Z0)
 seeds = st.integers(0, 2**32 - 1)
-
-
-# Dense systems
-
-
-@given(st.integers(1, 90), seeds)
-@settings(deadline=None, max_examples=60)
-def test_positive_systems_are_solved(n, seed):
-    random = np.random.default_rng(seed)
-    root = random.normal(size=(n, n))
-    matrix = root @ root.T + 0.1 * n * np.eye(n)
-    right = random.normal(size=n)
-    factor = np.triu(matrix) + np.tril(np.full((n, n), np.nan), -1)  # only the upper part is read
-    assert dense.factorise(factor, n)
-    upper = np.linalg.cholesky(matrix).T
-    found = np.triu(factor, 1) + np.diag(1 / np.diag(factor))
-    assert np.allclose(found, upper, rtol=0, atol=1e-12 * np.abs(upper).max())
-    x = right.copy()
-    dense.solve_factorised(factor, x, n)
-    wanted = np.linalg.solve(matrix, right)
-    assert np.allclose(x, wanted, rtol=0, atol=1e-11 * np.abs(wanted).max())
-    out = np.empty(n)
-    dense.multiply(matrix, right, out, n)
-    assert np.allclose(out, matrix @ right, rtol=0, atol=1e-12 * np.abs(out).max())
-
-
-@given(st.integers(1, 90), st.floats(-10, 0), seeds)
-@settings(deadline=None, max_examples=60)
-def test_indefinite_systems_are_rejected(n, lowest, seed):
-    random = np.random.default_rng(seed)
-    vectors, _ = np.linalg.qr(random.normal(size=(n, n)))
-    values = random.uniform(0.5, 2, n)
-    values[0] = lowest - 1e-6
-    assert not dense.factorise(np.ascontiguousarray((vectors * values) @ vectors.T), n)
-
-
-@pytest.mark.parametrize("n", [1, 3, 4, 5, 30])
-def test_systems_with_nan_are_rejected(n):
-    matrix = np.eye(n)
-    matrix[n // 2, n // 2] = np.nan
-    assert not dense.factorise(matrix, n)
 
 
 # Fields from mesh to mesh

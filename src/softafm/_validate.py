@@ -7,7 +7,7 @@ def positive(name: str, value: float, unit: str) -> float:
     """Return ``value`` as a float if it is finite and above zero, else raise ValueError."""
     number = finite(name, value, unit)
     if number <= 0:
-        raise ValueError(f"{name} = {number:g} {unit}: must be greater than 0".replace("  ", " "))
+        raise ValueError(f"{name} = {number:g} {unit}".rstrip() + ": must be greater than 0")
     return number
 
 

@@ -192,6 +192,12 @@ def _experiment(document: Mapping[str, Any], folder: Path) -> Experiment:
             built[name] = _build(name, document, mode, folder)
         except ConfigError as error:
             problems += str(error).splitlines()
+    run, solver = built.get("run", schema.Run()), built.get("solver")
+    if solver is not None and not solver.adaptive and "tolerance" in run.model_fields_set:
+        problems.append(
+            f"run.tolerance = {run.tolerance}: the solver '{solver.kind}' takes fixed steps, which "
+            "no tolerance changes; leave it out and use solver.steps"
+        )
     if problems:
         raise ConfigError(problems)
     contact = Contact(tip=built["tip"], sample=built["sample"], surface=built["surface"])
@@ -201,12 +207,11 @@ def _experiment(document: Mapping[str, Any], folder: Path) -> Experiment:
     except ValueError as error:
         key = next(key for key in ("start", "mean_height", "file") if key in motion)
         raise ConfigError([f"motion.{key} = {shown(motion[key])}: {error}"]) from None
-    run = built.get("run", schema.Run())
     return Experiment(
         mode=str(mode),
         contact=contact,
         motion=built["motion"],
-        solver=built.get("solver"),
+        solver=solver,
         tolerance=run.tolerance,
         profiles=run.profiles,
         document=document,

@@ -240,3 +240,8 @@ def as_numbers(name: str, values) -> np.ndarray:
         return np.array(values, float)
     except (TypeError, ValueError):
         raise ValueError(f"{name}: must be a sequence of numbers") from None
+
+
+def lowest_height(motion) -> float:
+    """Return the lowest height of any motion, m; it is met at a break or a landmark."""
+    return float(np.min(motion.height(np.concatenate([motion.breaks, motion.landmarks]))))

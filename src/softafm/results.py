@@ -102,7 +102,7 @@ def dataset(
         "mode": mode,
         "experiment": json.dumps(experiment),
         "solver": json.dumps(describe(solver)),
-        "tolerance": float(tolerance),
+        **({"tolerance": float(tolerance)} if solver.adaptive else {}),
         "softafm_version": softafm.__version__,
         "created": datetime.now(UTC).isoformat(timespec="seconds"),
         "tabor_instantaneous": contact.tabor_instantaneous,

@@ -4,9 +4,10 @@ Each choice a user can make in a table (``shape``, ``model``, ``law``, ``name``)
 its fields are the table's other keys, and ``build`` returns the object.
 """
 
+from collections.abc import Mapping
 from dataclasses import fields
 from pathlib import Path
-from typing import Annotated, Any, ClassVar
+from typing import Annotated, Any, ClassVar, Literal, get_args, get_origin, get_type_hints
 
 from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, ValidationInfo, create_model
 
@@ -14,8 +15,12 @@ from softafm import units
 from softafm._validate import finite, tolerance_of
 from softafm.measured import read_trajectory
 from softafm.motions import Sine, Trajectory, Triangle
+from softafm.refusals import one_of
 from softafm.rheology import Elastic, GeneralizedKelvinVoigt, StandardLinearSolid
+from softafm.solvers.attard import Attard
 from softafm.solvers.energy import Energy
+from softafm.solvers.enhanced import EnhancedAttard
+from softafm.solvers.stepping import AdamsBashforth, ForwardEuler, RungeKutta4, Stepper
 from softafm.surfaces import LennardJones
 from softafm.tips import Paraboloid
 
@@ -51,10 +56,25 @@ def _count(written: Any) -> int:
     return written
 
 
+def _whole(written: Any) -> int:
+    if isinstance(written, bool) or not isinstance(written, int) or abs(written) >= 2**63:
+        raise ValueError("must be a whole number, such as 100")
+    return written
+
+
 def _flag(written: Any) -> bool:
     if not isinstance(written, bool):
         raise ValueError("must be true or false")
     return written
+
+
+def _choice(choices: Mapping[str, Any]) -> BeforeValidator:
+    def read(written: Any) -> Any:
+        if not isinstance(written, str) or written not in choices:
+            raise ValueError(f"must be {one_of(list(choices))}")
+        return choices[written]
+
+    return BeforeValidator(read)
 
 
 def _list(written: Any) -> Any:
@@ -223,21 +243,51 @@ class Run(Table):
     profiles: Flag = False
 
 
+STEPPERS: dict[str, Stepper] = {
+    ForwardEuler.kind: ForwardEuler(),
+    **{f"{AdamsBashforth.kind}-{order}": AdamsBashforth(order) for order in range(1, 6)},
+    RungeKutta4.kind: RungeKutta4(),
+}
+"""How the steppers are written."""
+
+_WITH_UNIT = {"domain": Length}
+"""Parameters of solvers with a unit, which their type does not tell."""
+
+_PLAIN: dict[Any, Any] = {
+    int: Annotated[Any, BeforeValidator(_whole)],
+    float: Number,
+    float | None: Number,
+    bool: Flag,
+    Stepper: Annotated[Any, _choice(STEPPERS)],
+}
+"""How all other parameters are written, by the type that the solver's dataclass declares."""
+
+
 class Solver(Table):
-    """``[solver]``: its other keys are the solver's own parameters."""
+    """``[solver]``: its other keys are the solver's own parameters, left out at their defaults."""
 
     solver: ClassVar[type]
 
     def build(self) -> Any:
-        return self.solver(**self.model_dump())
+        return self.solver(**{key: getattr(self, key) for key in self.model_fields_set})
 
 
 def _solver(solver: type) -> type[Solver]:
     """Return the table of a solver, a dataclass whose parameters all have defaults."""
-    keys: dict[str, Any] = {field.name: (field.type, field.default) for field in fields(solver)}
+    types = get_type_hints(solver)
+    keys: dict[str, Any] = {f.name: (_written(f.name, types[f.name]), None) for f in fields(solver)}
     table = create_model(solver.__name__, __base__=Solver, **keys)
     table.solver = solver
     return table
+
+
+def _written(name: str, declared: Any) -> Any:
+    """Return the type of a key that is a solver's parameter."""
+    if name in _WITH_UNIT:
+        return _WITH_UNIT[name]
+    if get_origin(declared) is Literal:
+        return Annotated[Any, _choice({choice: choice for choice in get_args(declared)})]
+    return _PLAIN[declared]
 
 
 CHOICES: dict[str, tuple[str, dict[str, type[Table]]]] = {
@@ -251,7 +301,10 @@ CHOICES: dict[str, tuple[str, dict[str, type[Table]]]] = {
         },
     ),
     "surface": ("law", {"lennard-jones": LennardJonesSurface}),
-    "solver": ("name", {"energy": _solver(Energy)}),
+    "solver": (
+        "name",
+        {solver.kind: _solver(solver) for solver in (Energy, Attard, EnhancedAttard)},
+    ),
 }
 """For each table the key that chooses, and what it can choose."""
 

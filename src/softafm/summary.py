@@ -5,6 +5,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 from rich.table import Table
 
+from softafm.motions import lowest_height
+from softafm.solvers.energy import Energy, cohesive_lengths_crossed
 from softafm.units import readable
 
 if TYPE_CHECKING:
@@ -29,8 +31,7 @@ def regime(experiment: "Experiment") -> Table:
     """Return a table of the numbers that say how a contact will behave and what it will cost."""
     contact, motion = experiment.contact, experiment.motion
     first, last = float(motion.breaks[0]), float(motion.breaks[-1])
-    turns = np.concatenate([motion.breaks, motion.landmarks])
-    lowest = float(np.min(motion.height(turns)))
+    lowest = lowest_height(motion)
     radius = contact.contact_radius(lowest)
 
     table = _table(f"{experiment.mode}, before any run")
@@ -50,10 +51,14 @@ def regime(experiment: "Experiment") -> Table:
     for creep_time in map(float, contact.sample.reduced_compliance.retardation_times):
         words = _creep_in_words(creep_time / (last - first))
         table.add_row("creep time", readable(creep_time, "s"), words)
-    cycles = getattr(motion, "cycles", 1)
-    swept = 2 * radius / contact.cohesive_length * cycles
-    reason = f"the edge crosses at most {swept:.2g} cohesive lengths"
-    table.add_row("expected cost", _cost_in_words(swept, cycles), reason)
+    solver = Energy() if experiment.solver is None else experiment.solver
+    if solver.adaptive:
+        crossed = cohesive_lengths_crossed(contact, motion)
+        reason = f"the edge crosses at most {crossed:.2g} cohesive lengths"
+    else:
+        reason = f"{solver.steps} steps of {solver.nodes} nodes"
+    cost = _cost_in_words(solver.expected_seconds(contact, motion))
+    table.add_row("expected cost", cost, reason)
     return table
 
 
@@ -81,9 +86,9 @@ def _creep_in_words(share: float) -> str:
     return f"{share:.2g} of the motion: viscoelastic"
 
 
-def _cost_in_words(cohesive_lengths: float, cycles: int) -> str:
-    """Order of magnitude of a run on one core at the default tolerance, as measured."""
-    seconds = 1e-2 * cycles + 1e-4 * cohesive_lengths
+def _cost_in_words(seconds: float) -> str:
     if seconds < 1:
         return "under 1 s"
-    return "seconds" if seconds < 60 else "minutes"
+    if seconds < 60:
+        return "seconds"
+    return "minutes" if seconds < 3600 else "hours"

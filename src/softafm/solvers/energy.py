@@ -8,6 +8,7 @@ from typing import ClassVar
 from softafm._validate import finite, positive
 from softafm.announce import announced_compilation
 from softafm.errors import AccuracyWarning
+from softafm.motions import lowest_height
 from softafm.solvers.history import History
 
 
@@ -36,6 +37,7 @@ class Energy:
     """
 
     kind: ClassVar[str] = "energy"
+    adaptive: ClassVar[bool] = True
     finest_spacing: float = 5e-6
     most_steps: int = 2_000_000
 
@@ -77,3 +79,14 @@ class Energy:
         for text in history.warnings:
             warnings.warn(text, AccuracyWarning, stacklevel=3)
         return history
+
+    def expected_seconds(self, contact, motion) -> float:
+        """Order of magnitude of a run at the default tolerance, s on one core, as measured."""
+        cycles = getattr(motion, "cycles", 1)
+        return 1e-2 * cycles + 1e-4 * cohesive_lengths_crossed(contact, motion)
+
+
+def cohesive_lengths_crossed(contact, motion) -> float:
+    """Return how many cohesive lengths the contact edge crosses at most, in and out each cycle."""
+    radius = contact.contact_radius(lowest_height(motion))
+    return 2 * radius / contact.cohesive_length * getattr(motion, "cycles", 1)

@@ -63,6 +63,7 @@ class EnhancedAttard:
     """
 
     kind: ClassVar[str] = "enhanced-attard"
+    adaptive: ClassVar[bool] = False
     functions: int = 25
     nodes: int = 70
     basis: Literal["cosine", "bessel"] = "cosine"
@@ -110,6 +111,13 @@ class EnhancedAttard:
         domain = self.domain or default_domain(contact, motion)
         surface = self._discretise(contact.tip, domain, float(motion.height(motion.breaks[0])))
         return march(surface, contact, motion, self, profiles=profiles, progress=progress)
+
+    def expected_seconds(self, contact, motion) -> float:
+        """Order of magnitude of a run, s on one core, as measured."""
+        rate = 2e-6 + 3e-8 * self.nodes + self.functions**2 * (8e-9 + 4e-11 * self.nodes)
+        if not self.orthogonal:
+            rate += 6e-11 * self.functions * self.nodes**2
+        return self.steps * self.stepper.rates_per_step * rate
 
     def _discretise(self, tip, domain: float, height: float):
         from softafm.solvers import explicit_kernel as k

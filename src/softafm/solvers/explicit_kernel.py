@@ -143,7 +143,7 @@ WORK = types.NamedTuple(
     fastmath=_FAST,
 )
 def observe(setup, law, material, controls, height, state, work):
-    """Find gap and pressure of a state; False if the tip is in the surface or the pressure absurd."""
+    """Find gap and pressure of a state; False if the tip is in the surface or p beyond bounds."""
     n = setup.profile.size
     u, gap = work.displacement, work.gap
     if setup.kind <= NODAL:
@@ -189,11 +189,11 @@ def _iterate(setup, instantaneous, controls, speed, guess, work, counters):
             guess[i] += relaxation * miss
             off = max(off, abs(miss))
             largest = max(largest, abs(guess[i]))
+        if not off < 1e100:  # far beyond any speed, or NaN
+            break
         if off <= controls.tolerance * largest:
             counters[ITERATIONS] += iteration + 1
             return FINISHED
-        if not off < 1e300:
-            break
     return NOT_CONVERGED
 
 
@@ -327,10 +327,7 @@ def filter_pressure(material, work):
     for m in range(material.retardation.size):
         k = step / material.retardation[m]
         decay = exp(-k)
-        if k < 1e-4:
-            mean = 1.0 - k / 2.0 + k * k / 6.0
-        else:
-            mean = (1.0 - decay) / k
+        mean = 1.0 - k / 2.0 + k * k / 6.0 if k < 1e-4 else (1.0 - decay) / k
         filtered = work.filtered[m]
         for i in range(filtered.size):
             filtered[i] = (

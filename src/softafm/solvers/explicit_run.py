@@ -23,7 +23,7 @@ class Discretisation(NamedTuple):
 
 
 class Iteration(NamedTuple):
-    """Limits of the fixed-point iteration of setup A; ``relaxation`` 0 chooses it anew each time."""
+    """Limits of the fixed-point iteration of setup A; ``relaxation`` 0 is chosen every time."""
 
     tolerance: float = 1.0
     relaxation: float = 0.0
@@ -183,7 +183,7 @@ class _Run:
             jump_energy=np.empty(0),
             profiles=profiles,
             diagnostics={
-                "steps": count - 1,
+                "steps": max(0, count - 1),
                 "nodes": nodes.size,
                 "unknowns": self.setup.shapes.shape[0],
                 "domain": float(self.setup.rim[0]),

@@ -27,6 +27,7 @@ class AdamsBashforth:
     """
 
     kind: ClassVar[str] = "adams-bashforth"
+    rates_per_step: ClassVar[int] = 1
     order: int = 2
 
     def __post_init__(self):
@@ -45,6 +46,7 @@ class ForwardEuler:
     """Forward Euler steps, y⁺ = y + dt ẏ: Rajabifar et al. 2021, equation (26)."""
 
     kind: ClassVar[str] = "forward-euler"
+    rates_per_step: ClassVar[int] = 1
 
     @property
     def weights(self) -> np.ndarray:
@@ -57,6 +59,7 @@ class RungeKutta4:
     """The classical Runge-Kutta steps of fourth order, with four rates a step."""
 
     kind: ClassVar[str] = "runge-kutta-4"
+    rates_per_step: ClassVar[int] = 4
 
     @property
     def weights(self) -> np.ndarray:
