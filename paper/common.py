@@ -22,6 +22,7 @@ from rich.table import Table
 import softafm as sa
 from softafm import solvers
 from softafm.plotting import COLOURS
+from softafm.units import readable
 
 ROOT = Path(__file__).parents[1]
 OUTPUT = ROOT / "paper-output"
@@ -119,7 +120,7 @@ def attempt(run: Callable) -> Outcome:
             why = "no convergence" if "converge" in str(error) else "blew up"
             return Outcome(
                 past.time, past.tip_height, past.force, {}, perf_counter() - started,
-                f"{why} at {last * 1e6:.3f} us", bool(caught),
+                f"{why} at {readable(last, 's')}", bool(caught),
             )  # fmt: skip
         seconds = perf_counter() - started
     scalars = {str(name): float(v) for name, v in result.data_vars.items() if v.ndim == 0}
@@ -193,6 +194,18 @@ def panels(rows: int, columns: int, height: float, **options) -> tuple[Figure, n
 def mark_end(ax, x: np.ndarray, y: np.ndarray, colour) -> None:
     """Put a cross on the last point of a curve that stopped."""
     ax.plot(x[-1:], y[-1:], color=colour, zorder=5, **END)
+
+
+def zoom(ax, place: tuple, xlim: tuple, ylim: tuple) -> None:
+    """Repeat the curves of a panel, magnified, in an inset at ``place`` (panel fractions)."""
+    inset = ax.inset_axes(place, xlim=xlim, ylim=ylim)
+    inset.tick_params(which="both", direction="in", top=True, right=True, labelsize=8)
+    for line in ax.get_lines():
+        copy = Line2D(*line.get_data())
+        copy.update_from(line)
+        copy.set(transform=inset.transData, clip_path=inset.patch, markersize=6)
+        inset.add_line(copy)
+    ax.indicate_inset_zoom(inset, edgecolor="0.6")
 
 
 def write_csv(name: str, header: Iterable[str], rows: Iterable[Iterable]) -> Path:

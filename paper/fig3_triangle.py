@@ -20,8 +20,8 @@ import softafm as sa
 READINGS = {"fig3_triangle": 1.0, "fig3_triangle_halved": 0.5}
 SPEEDS = 5, 2, 1
 STYLES = {
-    "default": {"color": "0.82", "linewidth": 8, "solid_capstyle": "round"},
-    "A": {"color": common.SETUP_COLOURS["A"], "linewidth": 3.5},
+    "default": {"color": "0.82", "linewidth": 9, "solid_capstyle": "round"},
+    "A": {"color": common.SETUP_COLOURS["A"], "linewidth": 4.5},
     "B": {"color": common.SETUP_COLOURS["B"], "linewidth": 1.6, "linestyle": (0, (4, 2))},
     "E": {"color": common.SETUP_COLOURS["E"], "linewidth": 1.6, "linestyle": (3, (3, 3))},
 }
@@ -59,11 +59,19 @@ def report(runs, converged):
     """Write and print what came out."""
     table, summary = [], []
     for (name, speed, letter), run in runs.items():
+        ending = "-" if run.completed else run.ending
         values = [run.observables.get(key, np.nan) for key in OBSERVABLES]
         errors = [run.error(key, converged[name, speed]) for key in OBSERVABLES]
         given = 10 * READINGS[name], speed, letter
         table.append([*given, *values, *errors, run.seconds, run.ending, run.warned])
-        summary.append([*given, *errors, run.seconds, run.ending])
+        summary.append(
+            [
+                *given,
+                *("-" if np.isnan(e) else f"{e:+.2f}" for e in errors),
+                f"{run.seconds:.2f}",
+                ending,
+            ]
+        )
     common.write_csv(
         "fig3_triangle",
         ("reduced_E0_GPa", "speed_um_per_s", "solver",
@@ -72,9 +80,8 @@ def report(runs, converged):
         table,
     )  # fmt: skip
     common.show(
-        "Triangles: errors in % of the default solver's values at tolerance 1e-3",
-        ("E0, GPa", "µm/s", "solver", "force max", "min", "min, approach", "loop energy",
-         "seconds", "ending"),
+        "Errors of forces and loop energy, % (converged: default solver, tolerance 1e-3)",
+        ("GPa", "µm/s", "solver", "max", "min", "min, in", "loop", "s", "stopped"),
         summary,
     )  # fmt: skip
 
@@ -85,13 +92,17 @@ def draw(name, runs):
     moduli = f"reduced moduli {10 * READINGS[name]:g} and {READINGS[name]:g} GPa"
     figure.suptitle(f"Attard's triangle: {moduli}", fontsize=11)
     for ax, speed in zip(axes, SPEEDS, strict=True):
-        ax.axhline(0, color="0.6", linewidth=0.6, zorder=0)
         for letter, style in STYLES.items():
             run = runs[speed, letter]
             height, force = 1e9 * run.tip_height, 1e6 * run.force
             ax.plot(height, force, **style)
             if not run.completed:
                 common.mark_end(ax, height, force, style["color"])
+        away = runs[speed, "default"]
+        at = 1e9 * away.tip_height[away.force < away.observables["force_min"] / 10][-1]
+        drop = 1e6 * away.observables["force_min"]
+        common.zoom(ax, (0.5, 0.53, 0.47, 0.43), (at - 1.2, at + 0.6), (1.02 * drop, 0.12))
+        ax.axhline(0, color="0.6", linewidth=0.6, zorder=0)
         ax.set_title(f"{speed} µm/s", fontsize=11)
         ax.set_xlabel("tip height $h_0$ (nm)")
     axes[0].set_ylabel("force on the tip (µN)")

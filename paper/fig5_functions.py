@@ -58,11 +58,10 @@ def report(name, title, runs, converged):
     )  # fmt: skip
     exact = {key: runs["B", 0].error(key, converged) for key in OBSERVABLES}
     rows = [threshold_row(letter, limit, errors, exact) for letter in "CDEFG" for limit in (1, 2)]
-    header = ("setup", "error below", "n_b for V", "for E", "for both", "both, blow-ups left out",
-              "both, against B", "blown up at n_b")  # fmt: skip
+    header = ("setup", "below", "V", "E", "both", "both*", "both, against B", "blown up at")
     common.write_csv(f"{name}_thresholds", header, rows)
     common.show(
-        f"{title}: smallest n_b from which errors stay below a limit up to {BASIS_SIZES[-1]}; "
+        f"{title}: smallest n_b from which errors stay below a limit (* blow-ups left out); "
         f"B: {exact['virial']:+.2f} % in V, {exact['dissipation']:+.2f} % in E",
         header, rows,
     )  # fmt: skip
@@ -93,27 +92,27 @@ def draw(title, runs, errors, exact, converged):
     figure.suptitle(f"{title[0].upper()}{title[1:]}: {NODES} nodes, {STEPS} steps", fontsize=11)
     for column, (key, label) in enumerate(OBSERVABLES.items()):
         value, error = axes[column], axes[2 + column]
-        for letter in "CDEFG":
+        for row, letter in enumerate("CDEFG"):
             values = [1e18 * runs[letter, n].observables.get(key, np.nan) for n in BASIS_SIZES]
             look = {"color": common.SETUP_COLOURS[letter], "linewidth": 1.2, "label": letter}
             value.plot(BASIS_SIZES, values, marker=".", markersize=4, **look)
             error.plot(BASIS_SIZES, np.abs(errors[letter, key]), marker=".", markersize=4, **look)
             lost = [n for n in BASIS_SIZES if not runs[letter, n].completed]
             error.plot(
-                lost, [0.97] * len(lost), "x", color=common.SETUP_COLOURS[letter],
+                lost, [0.975 - 0.025 * row] * len(lost), "x", color=common.SETUP_COLOURS[letter],
                 transform=error.get_xaxis_transform(),
             )  # fmt: skip
         value.axhline(1e18 * converged[key], color="black", linewidth=0.8)
-        spread = max(0.3 * abs(1e18 * converged[key]), 1)
-        value.set_ylim(1e18 * converged[key] - spread, 1e18 * converged[key] + spread)
+        value.set_ylim(sorted(1e18 * converged[key] * part for part in (0.6, 1.1)))
         value.set_ylabel(f"{label} (aJ)")
         error.set_yscale("log")
         error.set_ylim(1e-3, 200)
         error.axhline(1, color="black", linestyle="--", linewidth=1)
-        error.text(55, 1.1, "1 %", ha="right", va="bottom")
+        error.text(56, 1.1, "1 %", ha="right", va="bottom", fontsize=9)
         error.axhline(abs(exact[key]), color="black", linestyle=":", linewidth=1.2, label="B")
         error.set_ylabel(f"error of {label} (%)")
         error.set_xlabel("$n_b$ (functions less one)")
+    axes[2].plot([], [], "x", color="0.4", markersize=4, label="blew up")
     axes[2].legend(ncols=3, frameon=False, fontsize=9)
     return figure
 

@@ -14,7 +14,6 @@ import numpy as np
 from matplotlib import colormaps
 
 BASIS_SIZES = 0, 2, 5, 10, 15, 20, 25, 30
-STROKES = {"approach": slice(None), "retraction": slice(None)}
 
 
 def main(progress=None):
@@ -73,9 +72,9 @@ def draw(runs, converged):
         ax.set_title(title, fontsize=11)
         ax.set_xlabel("tip height $h_0$ (nm)")
         ax.set_xlim(-7.5, 8)
+    common.zoom(axes[1], (0.5, 0.6, 0.46, 0.36), (1, 2.6), (-8, 0.3))
     axes[0].set_ylabel("force on the tip (nN)")
-    handles = axes[0].get_lines()
-    handles = [line for line in handles if not line.get_label().startswith("_")]
+    handles = axes[0].get_legend_handles_labels()[0]
     if not all(run.completed for run in runs.values()):
         handles.append(common.END_ENTRY)
     figure.legend(handles=handles, loc="outside right center", frameon=False)

@@ -1,6 +1,7 @@
 """The command line: what it writes, what it says, and how it fails."""
 
 import contextlib
+import json
 import os
 import re
 import signal
@@ -84,6 +85,34 @@ def test_run_takes_overrides_and_options(folder, softafm):
     assert "gap" in result
 
 
+def test_a_result_of_the_papers_solver_is_run_plotted_and_exported(folder, softafm):
+    code, _, err = softafm(
+        *("run", "attard-triangle.toml", "--solver", "attard", "--set", "solver.method=explicit"),
+        *("--set", "solver.stepper=runge-kutta-4", "--set", "solver.steps=2000"),
+        *("--set", "solver.nodes=35", "--set", "solver.domain=0.5um", "--out", "fixed.nc"),
+        *("--set", "surface.hamaker=1e-21 J"),
+    )
+    assert (code, err) == (0, "")
+    result = sa.load(folder / "fixed.nc")
+    assert json.loads(result.attrs["solver"]) == {
+        "kind": "attard",
+        "nodes": 35,
+        "domain": pytest.approx(0.5e-6),
+        "method": "explicit",
+        "steps": 2000,
+        "stepper": {"kind": "runge-kutta-4"},
+        "iteration_tolerance": 1e-6,
+        "relaxation": None,
+        "most_iterations": 100_000,
+    }
+    assert "tolerance" not in result.attrs
+    assert result["time"].size == 2001
+    assert softafm("plot", "fixed.nc")[0] == 0
+    assert (folder / "fixed.png").read_bytes().startswith(b"\x89PNG")
+    assert softafm("export", "fixed.nc", "--out", "fixed.csv")[0] == 0
+    assert "force (N)" in (folder / "fixed.csv").read_text(encoding="utf-8")
+
+
 def test_plot_draws_one_or_several(folder, softafm):
     softafm("run", "attard-triangle.toml", "--tolerance", "0.05")
     assert softafm("plot", "attard-triangle.nc")[0] == 0
@@ -111,6 +140,25 @@ def test_info_shows_the_regime_without_running(folder, softafm):
     assert "JKR" in out
     assert "expected cost" in out
     assert names(folder) == before
+
+
+@pytest.mark.parametrize(
+    ("settings", "cost", "reason"),
+    [
+        (["name=energy"], "under 1 s", "the edge crosses at most [0-9.]+ cohesive"),
+        (["name=attard"], "under 1 s", "10000 steps of 70 nodes"),
+        (["name=attard", "nodes=140", "method=explicit"], "seconds", "10000 steps of 140 nodes"),
+        (["name=attard", "nodes=140", "steps=50000"], "seconds", "50000 steps of 140 nodes"),
+        (["name=enhanced-attard"], "under 1 s", "10000 steps of 70 nodes"),
+        (["name=enhanced-attard", "steps=100000"], "seconds", "100000 steps of 70 nodes"),
+        (["name=enhanced-attard", "steps=10000000"], "minutes", "10000000 steps of 70 nodes"),
+    ],
+)
+def test_info_tells_the_cost_of_the_chosen_solver(folder, softafm, settings, cost, reason):
+    overrides = [word for key in settings for word in ("--set", f"solver.{key}")]
+    code, out, _ = softafm("info", "ldpe-tapping.toml", *overrides)
+    assert code == 0
+    assert re.search(rf"expected cost +{cost} +{reason}", out)
 
 
 @pytest.mark.parametrize(
@@ -236,7 +284,11 @@ def test_a_folder_or_a_wrong_suffix_is_no_output(folder, softafm):
         (("info", "none.toml"), "none.toml: no such file"),
         (("run", "ldpe-tapping.toml", "--set", "tip.radius=10 kg"), "tip.radius = '10 kg': must"),
         (("run", "ldpe-tapping.toml", "--set", "tip.radius"), "override 'tip.radius': must be"),
-        (("run", "ldpe-tapping.toml", "--solver", "attard"), "solver.name = 'attard': must be"),
+        (("run", "ldpe-tapping.toml", "--solver", "newton"), "solver.name = 'newton': must be"),
+        (("run", "ldpe-tapping.toml", "--solver", "attard", "--tolerance", "0.01"),
+         "run.tolerance = 0.01: the solver 'attard' takes fixed steps"),
+        (("run", "ldpe-tapping.toml", "--solver", "attard", "--set", "solver.nodes=1"),
+         "solver.nodes = 1: must be a whole number from 2 to 2000"),
         (("run", "ldpe-tapping.toml", "--tolerance", "0"), "run.tolerance = 0: must be"),
         (("run", "ldpe-tapping.toml", "--tolerance", "nan"), "run.tolerance = nan: must be"),
         (("run", "ldpe-tapping.toml", "--tolerance", "1%"), "run.tolerance = '1%': must be"),
@@ -287,6 +339,18 @@ def test_a_run_that_cannot_go_on_is_a_failure(folder, softafm):
     assert err.startswith("softafm: the run failed: ")
     assert err.count("\n") == 1
     assert not (folder / "ldpe-tapping.nc").exists()
+
+
+def test_a_run_that_blows_up_is_a_failure(folder, softafm):
+    before = names(folder)
+    code, out, err = softafm(
+        *("run", "ldpe-tapping.toml", "--solver", "attard", "--set", "solver.method=explicit"),
+        *("--set", "surface.z0=0.15nm"),
+    )
+    assert (code, out) == (1, "")
+    assert err.startswith("softafm: the run failed: blew up at t = ")
+    assert err.count("\n") == 1
+    assert names(folder) == before
 
 
 def test_an_unforeseen_error_is_one_line_and_a_traceback_on_request(folder, softafm, monkeypatch):

@@ -2,12 +2,14 @@
 
 import importlib.util
 import re
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
 
 import softafm as sa
+from softafm.config import example_text, load_experiment
 
 DOCS = Path(__file__).parents[1] / "docs"
 
@@ -52,3 +54,15 @@ def test_the_surface_law_of_the_extending_page_is_consistent(tmp_path):
 def test_the_tap_of_the_first_page_runs(tmp_path):
     tap = example_module("index.md", tmp_path).tap
     assert float(tap.dissipation) == pytest.approx(4.00e-17, rel=0.02)
+
+
+def test_the_solver_tables_of_the_command_line_page_hold_the_defaults(tmp_path):
+    page = (DOCS / "command-line.md").read_text(encoding="utf-8")
+    path = tmp_path / "experiment.toml"
+    solvers = []
+    for table in re.findall(r"```toml\n(\[solver\]\n.*?)```", page, re.S):
+        path.write_text(f"{example_text('ldpe-tapping')}\n{table}", encoding="utf-8")
+        solvers.append(load_experiment(path).solver)
+    segments, functions = solvers
+    assert replace(segments, domain=None, relaxation=None) == sa.solvers.Attard()
+    assert replace(functions, domain=None) == sa.solvers.EnhancedAttard()

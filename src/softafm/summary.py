@@ -1,6 +1,6 @@
 """Tables for people: what a run found, and what an experiment is before it runs."""
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from rich.table import Table
@@ -51,7 +51,7 @@ def regime(experiment: "Experiment") -> Table:
     for creep_time in map(float, contact.sample.reduced_compliance.retardation_times):
         words = _creep_in_words(creep_time / (last - first))
         table.add_row("creep time", readable(creep_time, "s"), words)
-    solver = Energy() if experiment.solver is None else experiment.solver
+    solver: Any = Energy() if experiment.solver is None else experiment.solver
     if solver.adaptive:
         crossed = cohesive_lengths_crossed(contact, motion)
         reason = f"the edge crosses at most {crossed:.2g} cohesive lengths"
