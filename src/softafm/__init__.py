@@ -3,9 +3,11 @@
 __version__ = "0.1.0"
 
 from softafm import solvers
+from softafm.cantilever import Cantilever
 from softafm.contact import Contact
 from softafm.errors import AccuracyWarning, DivergedError
 from softafm.modes.force_distance import force_distance
+from softafm.modes.spectroscopy import force_spectroscopy
 from softafm.modes.tapping import tapping_cycle
 from softafm.motions import Sine, Trajectory, Triangle
 from softafm.results import export, load, save
@@ -15,6 +17,7 @@ from softafm.tips import Paraboloid
 
 __all__ = [
     "AccuracyWarning",
+    "Cantilever",
     "Contact",
     "DivergedError",
     "Elastic",
@@ -27,6 +30,7 @@ __all__ = [
     "Triangle",
     "export",
     "force_distance",
+    "force_spectroscopy",
     "load",
     "save",
     "solvers",

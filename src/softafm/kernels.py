@@ -39,8 +39,8 @@ def lennard_jones_potential(gap, parameters, potential, n):
 
 @compiled(HEIGHT)
 def triangle(time, parameters):
-    turn, speed, time_of_turn = parameters[0], parameters[1], parameters[2]
-    return turn + speed * abs(time - time_of_turn)
+    turn, speed, middle, half_dwell = parameters[0], parameters[1], parameters[2], parameters[3]
+    return turn + speed * max(abs(time - middle) - half_dwell, 0.0)
 
 
 @compiled(HEIGHT)

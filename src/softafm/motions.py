@@ -4,7 +4,7 @@ Besides its parameters a motion tells the solver where it is not smooth (``break
 matter (``landmarks``), how fast it gets (``top_speed``), and its height as a compiled function.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import ClassVar
 
 import numpy as np
@@ -22,30 +22,61 @@ class Triangle:
         First and lowest height, m; ``turn`` below ``start``, negative = below the flat surface.
     speed
         Magnitude of the velocity, m/s.
+    dwell
+        Time at the lowest height, s.
+    setpoint_force
+        Force that turns the ramp when it is reached before ``turn``, N; None for no such trigger.
 
     Raises
     ------
     ValueError
-        If a value is not finite, the speed is not above zero, or the turn is not below the start.
+        If a value is not finite, the speed is not above zero, the dwell is below zero, or the turn
+        is not below the start.
     """
 
     kind: ClassVar[str] = "triangle"
     start: float
     turn: float
     speed: float
+    dwell: float = 0.0
+    setpoint_force: float | None = None
 
     def __post_init__(self):
         object.__setattr__(self, "start", finite("start", self.start, "m"))
         object.__setattr__(self, "turn", finite("turn", self.turn, "m"))
         object.__setattr__(self, "speed", positive("speed", self.speed, "m/s"))
+        object.__setattr__(self, "dwell", finite("dwell", self.dwell, "s"))
         if self.turn >= self.start:
             raise ValueError(f"turn = {self.turn:g} m: must be below start = {self.start:g} m")
+        if self.dwell < 0:
+            raise ValueError(f"dwell = {self.dwell:g} s: must be at least 0")
+        if self.setpoint_force is not None:
+            force = finite("setpoint_force", self.setpoint_force, "N")
+            object.__setattr__(self, "setpoint_force", force)
+
+    @classmethod
+    def from_frequency(
+        cls, mean_height: float, amplitude: float, frequency: float, **options
+    ) -> "Triangle":
+        """Build one period of a triangular wave, mean_height ± amplitude (m), of ``frequency``, Hz.
+
+        Its speed is 4·amplitude·frequency. ``options`` are ``dwell`` and ``setpoint_force``.
+        """
+        mean = finite("mean_height", mean_height, "m")
+        half = positive("amplitude", amplitude, "m")
+        speed = 4 * half * positive("frequency", frequency, "Hz")
+        return cls(mean + half, mean - half, speed, **options)
+
+    def turned_at(self, time: float) -> "Triangle":
+        """Return the ramp that turns at ``time`` (s) of the way down, and has no trigger left."""
+        return replace(self, turn=self.start - self.speed * time, setpoint_force=None)
 
     @property
     def breaks(self) -> np.ndarray:
         """Times between which the motion is smooth, first and last included, s."""
         half = (self.start - self.turn) / self.speed
-        return np.array([0.0, half, 2 * half])
+        turns = [half, half + self.dwell] if self.dwell else [half]
+        return np.array([0.0, *turns, 2 * half + self.dwell])
 
     @property
     def landmarks(self) -> np.ndarray:
@@ -57,20 +88,27 @@ class Triangle:
         """Largest magnitude of the velocity, m/s."""
         return self.speed
 
+    @property
+    def _middle(self) -> float:
+        return float(self.breaks[1] + self.dwell / 2)
+
     def height(self, time):
         """Height at ``time`` (s), m."""
-        return self.turn + self.speed * np.abs(np.asarray(time, float) - self.breaks[1])
+        away = np.abs(np.asarray(time, float) - self._middle) - self.dwell / 2
+        return self.turn + self.speed * np.maximum(away, 0.0)
 
     def velocity(self, time):
-        """Velocity at ``time`` (s), m/s; at the turn, that of the way back."""
-        return np.where(np.asarray(time) < self.breaks[1], -self.speed, self.speed)
+        """Velocity at ``time`` (s), m/s; at a corner, that after it."""
+        down, up = self.breaks[1], self.breaks[-2]
+        t = np.asarray(time)
+        return np.where(t < down, -self.speed, np.where(t < up, 0.0, self.speed))
 
     @property
     def compiled_height(self):
         """The height as a compiled function and its parameters (see ``softafm.compiled``)."""
         from softafm.kernels import triangle
 
-        return triangle, np.array([self.turn, self.speed, self.breaks[1]])
+        return triangle, np.array([self.turn, self.speed, self._middle, self.dwell / 2])
 
 
 @dataclass(frozen=True)

@@ -21,6 +21,8 @@ VARIABLES = {
     "time": ("s", "time"),
     "r": ("m", "radial coordinate"),
     "tip_height": ("m", "tip height above the undeformed surface"),
+    "base_height": ("m", "height of the base: that of the tip on an unbent lever"),
+    "deflection": ("m", "deflection of the lever, positive away from the sample"),
     "force": ("N", "force on the tip, positive = repulsive"),
     "contact_radius": ("m", "radius of the largest tension"),
     "axis_deformation": ("m", "surface displacement under the apex, positive towards the tip"),
@@ -72,6 +74,7 @@ def dataset(
     tolerance: float,
     history: History,
     observables: dict[str, tuple],
+    cantilever=None,
 ) -> "Dataset":
     """Assemble a result: the history, the mode's observables (dims, values) and the provenance."""
     from xarray import Dataset
@@ -97,6 +100,8 @@ def dataset(
         "surface": describe(contact.surface),
         "motion": describe(motion),
     }
+    if cantilever is not None:
+        experiment["cantilever"] = describe(cantilever)
     attributes = {
         "format": _FORMAT,
         "mode": mode,

@@ -4,13 +4,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from softafm._validate import tolerance_of
 from softafm.contact import Contact
-from softafm.modes.start import refuse_start_inside
+from softafm.modes.start import carry
 from softafm.motions import Sine, Trajectory, Triangle
-from softafm.progress import Progress, reporting
+from softafm.progress import Progress
 from softafm.results import dataset
-from softafm.solvers.energy import Energy
 
 if TYPE_CHECKING:
     from xarray import Dataset
@@ -57,20 +55,19 @@ def force_distance(
     DivergedError
         If the solver cannot continue.
     """
-    tolerance = tolerance_of(tolerance)
-    solver = Energy() if solver is None else solver
-    refuse_start_inside(contact, motion)
-    with reporting(progress) as report:
-        history = solver.solve(
-            contact, motion, tolerance=tolerance, profiles=profiles, progress=report
-        )
+    solver, tolerance, history = carry(contact, motion, solver, tolerance, profiles, progress)
+    observables = ramp_observables(history, history.tip_height)
+    return dataset("force-distance", contact, motion, solver, tolerance, history, observables)
+
+
+def ramp_observables(history, path) -> dict[str, tuple]:
+    """Return the scalars of a force curve whose ``path`` (n,), m, is the motion that was carried out."""
     force = history.force
-    lowest = history.time[np.argmin(history.tip_height)]
-    observables = {
+    lowest = history.time[np.argmin(path)]
+    return {
         "force_max": ((), history.extreme(force, 1)),
         "force_min": ((), history.extreme(force, -1)),
         "force_min_approach": ((), history.extreme(force, -1, stop=lowest)),
-        "loop_energy": ((), -history.integrate(force, motion.velocity)),
+        "loop_energy": ((), -history.integrate(force, history.motion.velocity)),
         "viscous_loss": ((), history.integrate(history.viscous_power, np.ones_like)),
     }
-    return dataset("force-distance", contact, motion, solver, tolerance, history, observables)

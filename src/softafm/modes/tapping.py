@@ -5,13 +5,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from softafm._validate import tolerance_of
 from softafm.contact import Contact
-from softafm.modes.start import refuse_start_inside
+from softafm.modes.start import carry
 from softafm.motions import Sine
-from softafm.progress import Progress, reporting
+from softafm.progress import Progress
 from softafm.results import dataset
-from softafm.solvers.energy import Energy
 
 if TYPE_CHECKING:
     from xarray import Dataset
@@ -60,14 +58,8 @@ def tapping_cycle(
     DivergedError
         If the solver cannot continue.
     """
-    tolerance = tolerance_of(tolerance)
-    solver = Energy() if solver is None else solver
     motion = Sine(mean_height, amplitude, frequency, cycles)
-    refuse_start_inside(contact, motion)
-    with reporting(progress) as report:
-        history = solver.solve(
-            contact, motion, tolerance=tolerance, profiles=profiles, progress=report
-        )
+    solver, tolerance, history = carry(contact, motion, solver, tolerance, profiles, progress)
 
     period = 1 / motion.frequency
     tops = period * np.arange(motion.cycles + 1)

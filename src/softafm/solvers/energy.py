@@ -48,13 +48,18 @@ class Energy:
         if finite("most_steps", self.most_steps, "steps") < 1:
             raise ValueError(f"most_steps = {self.most_steps!r} steps: must be at least 1")
 
-    def solve(self, contact, motion, *, tolerance=1e-2, profiles=False, progress=None) -> History:
+    def solve(
+        self, contact, motion, *, stiffness=None, tolerance=1e-2, profiles=False, progress=None
+    ) -> History:
         """Carry the contact, flat and relaxed at first, through the motion.
 
         Parameters
         ----------
         contact, motion
             ``softafm.Contact`` and a motion, e.g. ``softafm.Triangle``.
+        stiffness
+            Stiffness of a lever that carries the tip and whose base moves so, N/m; None moves the
+            tip itself.
         tolerance
             Target relative error of forces and energies.
         profiles
@@ -71,7 +76,7 @@ class Energy:
         with announced_compilation():
             from softafm.solvers.energy_run import Run
 
-            run = Run(self, contact, motion, tolerance, profiles)
+            run = Run(self, contact, motion, stiffness or 0.0, tolerance, profiles)
         for fraction in run.steps():
             if progress is not None:
                 progress(fraction, f"{fraction:.0%} of the motion")

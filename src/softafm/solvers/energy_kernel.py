@@ -7,6 +7,9 @@ stationarity of
 
     Π/(2πa²) = (u − v)ᵀ S (u − v)/(2 a c) + Σ m_i Φ(h_i),     h = h0 + g − u.
 
+A tip on a lever of stiffness k adds its deflection q to h0 and k q²/2 to the energy: one unknown
+more, solved for together with the surface. Where q is listed with u it stands in u[n].
+
 Memory is carried as displacements: q = K p and y_m = K w_m with τ_m ẏ_m = q − y_m, so that
 u = −(J_g q + Σ J_m y_m), and a change of frame is an interpolation of smooth fields.
 
@@ -30,7 +33,7 @@ _CONST = types.Array(float64, 1, "C", readonly=True)
 _CONST2 = types.Array(float64, 2, "C", readonly=True)
 
 # Why `advance` came back.
-FINISHED, FULL, REMESH, FALL, STUCK = range(5)
+FINISHED, FULL, REMESH, FALL, STUCK, TRIGGERED = range(6)
 
 # Rows of `fields`: the last three shapes, the last two loads q, then one row per memory mode y_m.
 DEFORMATION, EARLIER, EARLIEST, LOAD, LOAD_EARLIER, MEMORY = range(6)
@@ -38,12 +41,13 @@ DEFORMATION, EARLIER, EARLIEST, LOAD, LOAD_EARLIER, MEMORY = range(6)
 # Entries of `clock`: the instant, the step to try, the last two steps; radii of the frames of the
 # last three shapes; contact-edge radius, now and before; gap on the axis; the last three forces and
 # the largest so far; the number of past shapes fit for extrapolation; attempted steps and
-# Newton iterations so far.
+# Newton iterations so far; the last three deflections of the lever.
 TIME, STEP, LAST, BEFORE = range(4)
 FRAME, FRAME_EARLIER, FRAME_EARLIEST, EDGE, EDGE_EARLIER, AXIS_GAP = range(4, 10)
 FORCE, FORCE_EARLIER, FORCE_EARLIEST, FORCE_SCALE = range(10, 14)
 HISTORY, TRIES, NEWTONS = range(14, 17)
-CLOCK_SIZE = 17
+DEFLECTION, DEFLECTION_EARLIER, DEFLECTION_EARLIEST = range(17, 20)
+CLOCK_SIZE = 20
 
 # Columns of a record. COARSENESS is the node spacing at the edge over the width of the cohesive
 # zone; JUMP the energy released if an elastic jump led there, else 0.
@@ -65,13 +69,17 @@ class Mesh(NamedTuple):
 
 
 class Parameters(NamedTuple):
-    """Parameters of height, tip profile and surface law; J_g, J_1, ... in 1/Pa; τ_1, ... in s."""
+    """Parameters of height, tip profile and surface law; J_g, J_1, ... in 1/Pa; τ_1, ... in s.
+
+    ``lever`` holds its stiffness, N/m, 0 for a rigid one, and the time in which it relaxes, s.
+    """
 
     height: np.ndarray
     tip: np.ndarray
     law: np.ndarray
     compliance: np.ndarray
     retardation: np.ndarray
+    lever: np.ndarray
 
 
 class Controls(NamedTuple):
@@ -81,6 +89,7 @@ class Controls(NamedTuple):
     equilibrium; all relative to the gap, but ``force`` to the largest force so far.
     ``slack`` is how far the edge moves, in edge spacings, while the frame catches up with it.
     Remeshing is asked for when the coarseness of a record leaves ``finest`` to ``coarsest``.
+    The step in which the force reaches ``trigger``, N, is the last.
     """
 
     end: float
@@ -97,6 +106,7 @@ class Controls(NamedTuple):
     finest: float
     coarsest: float
     most_tries: float
+    trigger: float
 
 
 MESH = types.NamedTuple((_CONST, _CONST, _CONST2, float64, float64), Mesh)
@@ -156,33 +166,62 @@ def radius_of_gap(gap, nodes, value):
     return nodes[nodes.size - 1]
 
 
-@njit((MESH, float64, _V, _V, float64, _M), cache=True, fastmath=_FAST)
-def _assemble(mesh, scale, slope, gradient, shift, hessian):
-    """Upper triangle of S·scale − diag(m (p' − shift))."""
-    n = gradient.size
+@njit((MESH, float64, _V, float64, float64, _M), cache=True, fastmath=_FAST)
+def _assemble(mesh, scale, slope, shift, lever, hessian):
+    """Upper triangle of S·scale − diag(m (p' − shift)), bordered by a lever's row if it has one.
+
+    ``lever`` is its stiffness in units of Π/q², 0 for a rigid one.
+    """
+    n = mesh.nodes.size
+    total = lever
     for i in range(n):
         for j in range(i, n):
             hessian[i, j] = mesh.stiffness[i, j] * scale
-        hessian[i, i] += mesh.masses[i] * (shift - slope[i])
+        curvature = mesh.masses[i] * slope[i]
+        hessian[i, i] += mesh.masses[i] * shift - curvature
+        hessian[i, n] = curvature
+        total -= curvature
+    hessian[n, n] = total + shift
+
+
+@njit((_V, _V, float64, pointer(POTENTIAL), _V, _V), cache=True, fastmath=_FAST)
+def _beyond_mesh(gap, pressure, beyond, potential, parameters, scratch):
+    """Force that acts beyond the last node and minus its derivative with the gap, both over 2πa².
+
+    There, where the profile is g, r dr = (r²/2g) dh on a paraboloid, and the integral of p is Φ.
+    """
+    last = gap.size - 1
+    scratch[0] = gap[last]
+    potential(scratch, parameters, scratch, 1)
+    return beyond * scratch[0], beyond * pressure[last]
 
 
 @njit(
-    int64(_V, _V, float64, _V, MESH, pointer(PRESSURE), _V, float64, float64, _M, _M),
+    int64(
+        _V, _V, float64, _V, float64, float64, float64,
+        MESH, pointer(PRESSURE), pointer(POTENTIAL), _V, float64, float64, _M, _M,
+    ),
     cache=True,
     fastmath=_FAST,
-)
-def equilibrate(u, v, ac, standoff, mesh, law, parameters, smallest_gap, accuracy, hessian, work):
-    """Newton's method for u = v − c K p(standoff − u) from a good guess, in place.
+)  # fmt: skip
+def equilibrate(
+    u, v, ac, standoff, lever, rest, beyond,
+    mesh, law, potential, parameters, smallest_gap, accuracy, hessian, work,
+):  # fmt: skip
+    """Newton's method for u = v − c K p(standoff + q − u) from a good guess, in place.
 
-    ``ac`` is frame radius times compliance, ``standoff`` the gap to the flat surface. Leaves the
-    gap and the pressure in rows 0 and 1 of ``work``. Returns the number of iterations, negative if
-    the guess was not near a stable shape (an indefinite Hessian, or no convergence).
+    ``ac`` is frame radius times compliance, ``standoff`` the gap to the flat surface of an unbent
+    lever. Its deflection q balances ``lever``·(q − ``rest``) against the force, of which
+    ``beyond``·Φ acts beyond the mesh; ``lever`` 0 holds q still. Leaves the gap and the pressure in
+    rows 0 and 1 of ``work``. Returns the number of iterations, negative if the guess was not near a
+    stable shape (an indefinite Hessian, or no convergence).
     """
-    n = u.size
-    gap, pressure, slope, change = work[0], work[1], work[2], work[3]
+    n = standoff.size
+    size = n + 1 if lever > 0.0 else n
+    gap, pressure, slope, change = work[0, :n], work[1, :n], work[2, :n], work[3]
     scale = 1.0 / ac
     for i in range(n):
-        gap[i] = standoff[i] - u[i]
+        gap[i] = standoff[i] + u[n] - u[i]
         if not gap[i] > smallest_gap:
             return -1
     previous = 0.5
@@ -190,92 +229,118 @@ def equilibrate(u, v, ac, standoff, mesh, law, parameters, smallest_gap, accurac
         law(gap, parameters, pressure, slope, n)
         for i in range(n):
             u[i] -= v[i]
-        multiply(mesh.stiffness, u, change)
+        multiply(mesh.stiffness, u[:n], change[:n])
+        change[n] = 0.0
         for i in range(n):
             u[i] += v[i]
-            change[i] = -(change[i] * scale + mesh.masses[i] * pressure[i])
-        _assemble(mesh, scale, slope, change, 0.0, hessian)
-        if not factorise(hessian, n):
+            push = mesh.masses[i] * pressure[i]
+            change[i] = -(change[i] * scale + push)
+            change[n] += push
+        border = lever
+        if size > n:
+            tail, draw = _beyond_mesh(gap, pressure, beyond, potential, parameters, work[4])
+            change[n] += tail - lever * (u[n] - rest)
+            border += draw
+        _assemble(mesh, scale, slope, 0.0, border, hessian)
+        if not factorise(hessian, size):
             return -iteration
-        solve_factorised(hessian, change, n)
+        solve_factorised(hessian, change, size)
+        if size == n:
+            change[n] = 0.0
         largest = 0.0
         for i in range(n):
-            largest = max(largest, abs(change[i]) / gap[i])
+            largest = max(largest, abs(change[i] - change[n]) / gap[i])
         if not largest < previous:
             return -iteration
+        u[n] += change[n]
         for i in range(n):
             u[i] += change[i]
-            gap[i] = standoff[i] - u[i]
+            gap[i] = standoff[i] + u[n] - u[i]
         if largest < accuracy:
             for i in range(n):
-                pressure[i] -= slope[i] * change[i]
+                pressure[i] += slope[i] * (change[n] - change[i])
             return iteration
         previous = largest
     return -8
 
 
 @njit(
-    int64(_V, _V, float64, _V, MESH, pointer(PRESSURE), pointer(POTENTIAL), _V, float64),
+    int64(
+        _V, _V, float64, _V, float64, float64,
+        MESH, pointer(PRESSURE), pointer(POTENTIAL), _V, float64,
+    ),
     cache=True,
     fastmath=_FAST,
-)
-def settle(u, v, ac, standoff, mesh, law, potential, parameters, accuracy):
-    """Descend from ``u``, in place, to a stable shape of u = v − c K p(standoff − u).
+)  # fmt: skip
+def settle(u, v, ac, standoff, lever, beyond, mesh, law, potential, parameters, accuracy):
+    """Descend from ``u``, in place, to a stable shape of u = v − c K p(standoff + q − u).
 
     Newton's method on Π, its Hessian shifted until it is positive and no gap changes by more than
-    40 %, each step shortened until Π falls. Returns the number of iterations, or -1 if 10 000 do
-    not suffice.
+    40 %, each step shortened until Π falls. Arguments as of ``equilibrate``. Returns the number of
+    iterations, or -1 if 10 000 do not suffice.
     """
-    n = u.size
-    hessian = np.empty((n, n))
+    n = standoff.size
+    size = n + 1 if lever > 0.0 else n
+    hessian = np.empty((n + 1, n + 1))
     gap, pressure, slope, density = np.empty(n), np.empty(n), np.empty(n), np.empty(n)
-    change, gradient, trial, strain = np.empty(n), np.empty(n), np.empty(n), np.empty(n)
+    gradient, change, trial, strain = np.empty(n + 1), np.empty(n + 1), np.empty(n), np.empty(n)
+    tail_work = np.empty(1)
     scale = 1.0 / ac
     shift = 0.0
     for iteration in range(1, 10001):
         for i in range(n):
-            gap[i] = standoff[i] - u[i]
+            gap[i] = standoff[i] + u[n] - u[i]
             trial[i] = u[i] - v[i]
         law(gap, parameters, pressure, slope, n)
         potential(gap, parameters, density, n)
         multiply(mesh.stiffness, trial, strain)
-        value, steepest = 0.0, 0.0
+        tail, border = 0.0, lever
+        if size > n:
+            tail, draw = _beyond_mesh(gap, pressure, beyond, potential, parameters, tail_work)
+            border += draw
+        value, steepest = 0.5 * lever * u[n] * u[n] - tail * u[n], 0.0
+        gradient[n] = lever * u[n] - tail
         for i in range(n):
+            push = mesh.masses[i] * pressure[i]
             value += 0.5 * trial[i] * strain[i] * scale + mesh.masses[i] * density[i]
-            gradient[i] = strain[i] * scale + mesh.masses[i] * pressure[i]
+            gradient[i] = strain[i] * scale + push
+            gradient[n] -= push
             steepest = max(steepest, abs(slope[i]))
         while True:
-            for i in range(n):
+            for i in range(size):
                 change[i] = -gradient[i]
-            _assemble(mesh, scale, slope, change, shift, hessian)
-            if factorise(hessian, n):
-                solve_factorised(hessian, change, n)
-                largest, downhill = 0.0, 0.0
+            _assemble(mesh, scale, slope, shift, border, hessian)
+            if factorise(hessian, size):
+                solve_factorised(hessian, change, size)
+                if size == n:
+                    change[n] = 0.0
+                largest, downhill = 0.0, change[n] * gradient[n]
                 for i in range(n):
-                    largest = max(largest, abs(change[i]) / gap[i])
+                    largest = max(largest, abs(change[i] - change[n]) / gap[i])
                     downhill += change[i] * gradient[i]
                 if largest < 0.4:
                     break
             shift = max(4.0 * shift, 1e-4 * steepest)
         if shift == 0.0 and largest < accuracy:
-            for i in range(n):
+            for i in range(n + 1):
                 u[i] += change[i]
             return iteration
         length = 1.0
         while length > 1e-8:
+            q = u[n] + length * change[n]
             for i in range(n):
                 trial[i] = u[i] + length * change[i]
-                gap[i] = standoff[i] - trial[i]
+                gap[i] = standoff[i] + q - trial[i]
                 trial[i] -= v[i]
             potential(gap, parameters, density, n)
             multiply(mesh.stiffness, trial, strain)
-            lower = 0.0
+            lower = 0.5 * lever * q * q - tail * q
             for i in range(n):
                 lower += 0.5 * trial[i] * strain[i] * scale + mesh.masses[i] * density[i]
             if lower <= value + 1e-4 * length * downhill + 1e-14 * abs(value):
                 break
             length *= 0.5
-        for i in range(n):
+        for i in range(n + 1):
             u[i] += length * change[i]
         shift = 0.25 * shift if shift > 4e-4 * steepest else 0.0
     return -1
@@ -397,8 +462,13 @@ def predict(frame, step, history, fields, clock, mesh, weights, guess, shape):
         ago += clock[LAST + k]
 
 
-@njit((_V, float64, float64, float64, float64), cache=True)
-def _move_clock(clock, step, frame, edge, force):
+@njit((_V, float64, float64, float64, float64, float64), cache=True)
+def _move_clock(clock, step, frame, edge, force, deflection):
+    clock[DEFLECTION_EARLIEST], clock[DEFLECTION_EARLIER], clock[DEFLECTION] = (
+        clock[DEFLECTION_EARLIER],
+        clock[DEFLECTION],
+        deflection,
+    )
     clock[FORCE_EARLIEST], clock[FORCE_EARLIER], clock[FORCE] = (
         clock[FORCE_EARLIER],
         clock[FORCE],
@@ -435,12 +505,13 @@ def advance(
     n = mesh.nodes.size
     compliance, retardation = parameters.compliance, parameters.retardation
     modes = retardation.size
-    hessian = np.empty((n, n))
-    newton_work = np.empty((4, n))
-    gap, pressure = newton_work[0], newton_work[1]
-    work = np.empty((9, n))
-    u, v, guess, standoff, scratch = work[0], work[1], work[2], work[3], work[4]
-    load, load_earlier, load_new, tip = work[5], work[6], work[7], work[8]
+    hessian = np.empty((n + 1, n + 1))
+    newton_work = np.empty((5, n + 1))
+    gap, pressure = newton_work[0, :n], newton_work[1, :n]
+    work = np.empty((8, n))
+    v, guess, standoff, scratch = work[0], work[1], work[2], work[3]
+    load, load_earlier, load_new, tip = work[4], work[5], work[6], work[7]
+    u = np.empty(n + 1)
     memory = np.empty((modes, n))
     remember = np.empty((modes, 5))
     weights = np.empty(3)
@@ -497,9 +568,19 @@ def advance(
 
         extrapolation_weights(history, step, clock[LAST], clock[BEFORE], weights)
         predict(frame, step, history, fields, clock, mesh, weights, guess, scratch)
-        u[:] = guess
+        deflection = 0.0
+        for k in range(history):
+            deflection += weights[k] * clock[DEFLECTION + k]
+        u[:n] = guess
+        u[n] = deflection
+        # A lever that relaxes in a time of its own resists as one so much stiffer, bent before.
+        drag = parameters.lever[1] / step
+        lever = parameters.lever[0] * (1.0 + drag) / (2.0 * pi * frame * frame)
+        rest = clock[DEFLECTION] * drag / (1.0 + drag)
+        beyond = mesh.nodes[n - 1] ** 2 / (2.0 * tip[n - 1])
         iterations = equilibrate(
-            u, v, frame * c, standoff, mesh, law, parameters.law,
+            u, v, frame * c, standoff, lever, rest, beyond,
+            mesh, law, potential, parameters.law,
             0.3 * controls.gap_of_tension, controls.newton, hessian, newton_work,
         )  # fmt: skip
         clock[NEWTONS] += abs(iterations)
@@ -519,7 +600,8 @@ def advance(
 
         error = 0.0
         for i in range(n):
-            error = max(error, abs(u[i] - guess[i]) / (controls.prediction * gap[i]))
+            found = u[i] - u[n] + deflection
+            error = max(error, abs(found - guess[i]) / (controls.prediction * gap[i]))
         if order == 2:
             ratio = clock[LAST] / step
             curvature = 0.0
@@ -527,7 +609,14 @@ def advance(
                 curvature += compliance[m + 1] * remember[m, _CURVATURE]
             for i in range(n):
                 bend = (load_new[i] + load_earlier[i] / ratio) / (1.0 + ratio) - load[i] / ratio
-                error = max(error, abs(curvature * bend) / (controls.memory * gap[i]))
+                scratch[i] = curvature * bend / (frame * c)
+            # What an error of the memory does to the surface, which is much near a fold.
+            miss = newton_work[3]
+            multiply(mesh.stiffness, scratch, miss[:n])
+            miss[n] = 0.0
+            solve_factorised(hessian, miss, n + 1 if lever > 0.0 else n)
+            for i in range(n):
+                error = max(error, abs(miss[i] - miss[n]) / (controls.memory * gap[i]))
         foreseen = 0.0
         for k in range(history):
             foreseen += weights[k] * clock[FORCE + k]
@@ -536,6 +625,11 @@ def advance(
         growth = 0.85 * max(error, 1e-6) ** (-1.0 / history)
         if error > 1.5 and step > controls.shortest_step:
             clock[STEP] = max(step * max(0.25, growth), 0.999 * controls.shortest_step)
+            continue
+        excess = force - controls.trigger
+        if excess > 0.1 * controls.force * abs(controls.trigger) and step > controls.shortest_step:
+            part = 1.0 - excess / (force - clock[FORCE])
+            clock[STEP] = max(step * max(0.1, part), 0.999 * controls.shortest_step)
             continue
 
         # Accept the step.
@@ -557,7 +651,7 @@ def advance(
             fields[LOAD_EARLIER, i] = fields[LOAD, i]
             fields[LOAD, i] = load_new[i]
         edge = frame * radius_of_gap(gap, mesh.nodes, controls.gap_of_tension)
-        _move_clock(clock, step, frame, edge, force)
+        _move_clock(clock, step, frame, edge, force, u[n])
         clock[TIME] = controls.end if step == left else clock[TIME] + step
         clock[STEP] = max(step * min(2.5, max(0.3, growth)), 0.999 * controls.shortest_step)
         clock[HISTORY] = min(history + 1, 3)
@@ -569,13 +663,16 @@ def advance(
             zone = frame * radius_of_gap(gap, mesh.nodes, 2.0 * controls.gap_of_tension) - edge
             coarseness = frame * mesh.edge_spacing / zone
         row = records[count]
-        row[R_TIME], row[R_HEIGHT], row[R_FORCE], row[R_EDGE] = clock[TIME], h0, force, edge
+        row[R_TIME], row[R_HEIGHT], row[R_FORCE], row[R_EDGE] = clock[TIME], h0 + u[n], force, edge
         row[R_AXIS], row[R_LOSS], row[R_COARSENESS] = u[0], loss, coarseness
         row[R_FRAME], row[R_JUMP] = frame, 0.0
         if shapes.shape[0] > count:
             for i in range(n):
                 shapes[count, i] = u[i]
         count += 1
+        if excess > 0.0:
+            outcome = TRIGGERED
+            break
         if edge > 0.0 and not controls.finest <= coarseness <= controls.coarsest:
             outcome = REMESH
             break

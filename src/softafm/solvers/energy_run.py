@@ -20,10 +20,10 @@ _MOST_TRIES_IN_A_FALL = 5000.0
 class Run:
     """Carries a surface through a motion and keeps what happens."""
 
-    def __init__(self, solver, contact, motion, tolerance: float, keep_shapes: bool):
+    def __init__(self, solver, contact, motion, stiffness, tolerance: float, keep_shapes: bool):
         self.solver, self.contact, self.motion = solver, contact, motion
         self.strictness = tolerance / 1e-2
-        self.surface = Surface(contact, motion, self.strictness, solver.finest_spacing)
+        self.surface = Surface(contact, motion, stiffness, self.strictness, solver.finest_spacing)
         gap = self.surface.gap_of_tension
         fastest = min([gap / motion.top_speed, *self.surface.parameters.retardation])
         self.controls = k.Controls(
@@ -41,6 +41,7 @@ class Run:
             finest=0.0,
             coarsest=0.0,
             most_tries=float(solver.most_steps),
+            trigger=np.inf,
         )
         self.target = self.surface.target
         self.records = np.empty((_CHUNK, k.RECORD_WIDTH))
@@ -51,19 +52,20 @@ class Run:
 
     def steps(self) -> Iterator[float]:
         """Run, yielding the fraction of the motion done at every return of the compiled loop."""
-        surface, motion = self.surface, self.motion
+        surface = self.surface
         self._keep(surface.settle()[None], surface.fields[k.DEFORMATION][None])
-        stops = np.union1d(motion.breaks, motion.landmarks)
-        first, span = stops[0], stops[-1] - stops[0]
-        for start, stop in pairwise(stops):
-            if start in motion.breaks:
+        first = surface.time
+        while (stop := self._next_stop()) is not None:
+            if surface.time in self.motion.breaks:
                 self._begin_piece(stop)
             surface.target = self.target
             # However little happens, smooth curves need points.
-            longest = (stop - start) / 12 * self.strictness**0.25
-            self.controls = self.controls._replace(longest_step=longest)
+            longest = (stop - surface.time) / 12 * self.strictness**0.25
+            self.controls = self.controls._replace(
+                longest_step=longest, trigger=self._trigger(stop)
+            )
             outcome = k.FULL
-            while outcome != k.FINISHED:
+            while outcome not in (k.FINISHED, k.TRIGGERED):
                 outcome, records, shapes = self._advance(stop)
                 self._keep(records, shapes)
                 if outcome == k.STUCK:
@@ -76,7 +78,30 @@ class Run:
                     surface.remesh(records[-1, k.R_COARSENESS])
                 if outcome == k.FALL:
                     self._fall(stop)
-                yield (surface.time - first) / span
+                if outcome == k.TRIGGERED:
+                    self._turn()
+                yield (surface.time - first) / (self.motion.breaks[-1] - first)
+
+    def _next_stop(self):
+        """Return the next instant that a step has to meet, s, or None at the end."""
+        stops = np.union1d(self.motion.breaks, self.motion.landmarks)
+        ahead = stops[stops > self.surface.time]
+        return float(ahead[0]) if ahead.size else None
+
+    def _trigger(self, stop) -> float:
+        """Return the force that turns the ramp before ``stop``, N."""
+        force = getattr(self.motion, "setpoint_force", None)
+        return np.inf if force is None or stop > self.motion.breaks[1] else force
+
+    def _turn(self):
+        """Let the ramp turn now, its force having been reached."""
+        surface = self.surface
+        self.motion = self.motion.turned_at(surface.time)
+        height, parameters = self.motion.compiled_height
+        surface.functions = (height, *surface.functions[1:])
+        surface.parameters = surface.parameters._replace(height=parameters)
+        surface.clock[k.TIME] = self.motion.breaks[1]
+        self.chunks[-1][-1, k.R_TIME] = surface.time
 
     def _begin_piece(self, stop):
         """Forget the past shapes: beyond a break of the motion they do not extrapolate."""
@@ -139,10 +164,11 @@ class Run:
                 height=np.array([functions[0](time, parameters.height)]),
                 compliance=np.concatenate([[stiff], modes, [delayed]]),
                 retardation=np.append(parameters.retardation, creep_time),
+                lever=np.array([parameters.lever[0], creep_time]),
             )
             self.controls = controls._replace(
                 shortest_step=1e-9 * creep_time, longest_step=duration, top_speed=1e-300,
-                prediction=0.2, memory=0.2, force=1.0,
+                prediction=0.2, memory=0.2, force=1.0, trigger=np.inf,
                 most_tries=min(controls.most_tries, clock[k.TRIES] + _MOST_TRIES_IN_A_FALL),
             )  # fmt: skip
             clock[k.TIME], clock[k.STEP], clock[k.HISTORY] = 0.0, 1e-3 * creep_time, 1
@@ -152,6 +178,9 @@ class Run:
                 if outcome == k.REMESH:
                     surface.remesh(records[-1, k.R_COARSENESS])
             behind = delayed * np.abs(surface.fields[k.LOAD] - surface.fields[-1]).max()
+            if parameters.lever[0] > 0:
+                unbalanced = clock[k.FORCE] / parameters.lever[0] - clock[k.DEFLECTION]
+                behind = max(behind, abs(unbalanced))
             if outcome != k.FINISHED or behind < 1e-4 * surface.gap_of_tension:
                 break
         surface.functions, surface.parameters, self.controls = functions, parameters, controls
@@ -186,6 +215,7 @@ class Run:
             axis_deformation=records[:, k.R_AXIS],
             viscous_power=records[:, k.R_LOSS],
             pieces=tuple(slice(int(a), int(b)) for a, b in zip(starts, ends, strict=True)),
+            motion=self.motion,
             jump_time=time[jumped],
             jump_energy=records[jumped, k.R_JUMP],
             profiles=None if self.shapes is None else on_common_radii(self.shapes),

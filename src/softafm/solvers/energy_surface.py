@@ -23,7 +23,7 @@ class Surface:
     spacing aimed at, as a part of the width of the cohesive zone.
     """
 
-    def __init__(self, contact, motion, strictness: float, finest_spacing: float):
+    def __init__(self, contact, motion, stiffness, strictness: float, finest_spacing: float):
         self.contact = contact
         compliance = contact.sample.reduced_compliance
         height, height_parameters = motion.compiled_height
@@ -36,6 +36,7 @@ class Surface:
             law_parameters,
             np.append(compliance.instantaneous, compliance.modes),
             np.array(compliance.retardation_times, float),
+            np.array([stiffness, 0.0]),
         )
         self.gap_of_tension = contact.surface.gap_of_largest_tension
         self.open_frame = 1.5 * sqrt(contact.tip.radius * contact.surface.equilibrium_gap)
@@ -95,16 +96,21 @@ class Surface:
         n, frame = mesh.nodes.size, clock[k.FRAME]
         tip, pressure, scratch = np.empty(n), np.empty(n), np.empty(n)
         profile(frame * mesh.nodes, self.parameters.tip, tip, n)
-        h0 = height(self.time, self.parameters.height)
-        u, memory = self.fields[k.DEFORMATION], self.fields[k.MEMORY :]
+        base = height(self.time, self.parameters.height)
+        memory = self.fields[k.MEMORY :]
         instantaneous, modes = self.parameters.compliance[0], self.parameters.compliance[1:]
         v = -modes @ memory
+        unknowns = np.append(self.fields[k.DEFORMATION], clock[k.DEFLECTION])
+        lever = self.parameters.lever[0] / (2 * np.pi * frame**2)
         iterations = k.settle(
-            u, v, frame * instantaneous, h0 + tip, mesh, law, potential, self.parameters.law,
-            self.accuracy,
+            unknowns, v, frame * instantaneous, base + tip, lever, mesh.nodes[-1] ** 2 / 2 / tip[-1],
+            mesh, law, potential, self.parameters.law, self.accuracy,
         )  # fmt: skip
         if iterations < 0:
-            raise DivergedError(f"no stable surface found at tip height {h0:g} m")
+            raise DivergedError(f"no stable surface found at height {base:g} m")
+        u, clock[k.DEFLECTION] = unknowns[:-1], unknowns[-1]
+        self.fields[k.DEFORMATION] = u
+        h0 = base + clock[k.DEFLECTION]
         self.fields[k.LOAD] = (v - u) / instantaneous
         gap = h0 + tip - u
         law(gap, self.parameters.law, pressure, scratch, n)
@@ -127,9 +133,9 @@ class Surface:
         return record
 
     def energy(self) -> float:
-        """Energy of the contact as an instantaneous elastic one, to infinity, J."""
-        mesh, frame = self.mesh, self.clock[k.FRAME]
-        h0 = self.functions[0](self.time, self.parameters.height)
+        """Energy of the contact as an instantaneous elastic one, to infinity, and of the lever, J."""
+        mesh, frame, deflection = self.mesh, self.clock[k.FRAME], self.clock[k.DEFLECTION]
+        h0 = self.functions[0](self.time, self.parameters.height) + deflection
         load = self.fields[k.LOAD]
         elastic = np.pi * frame * self.parameters.compliance[0] * (load @ mesh.stiffness @ load)
 
@@ -141,4 +147,5 @@ class Surface:
         end = frame * mesh.nodes[-1]
         r = 2 * end / (1 + _POINTS)
         beyond = np.sum(_WEIGHTS * density(r, 0.0) * r**3 / (2 * end))
-        return float(elastic + 2 * np.pi * (near + beyond))
+        bending = 0.5 * self.parameters.lever[0] * deflection**2
+        return float(elastic + bending + 2 * np.pi * (near + beyond))

@@ -181,6 +181,7 @@ class _Run:
             pieces=tuple(slice(int(a), int(b) + 1) for a, b in pairwise(ends) if a < count),
             jump_time=np.empty(0),
             jump_energy=np.empty(0),
+            motion=self.motion,
             profiles=profiles,
             diagnostics={
                 "steps": max(0, count - 1),

@@ -1,6 +1,7 @@
 """What every solver returns: the contact's history."""
 
 from dataclasses import dataclass, field
+from typing import Any
 
 import numpy as np
 
@@ -38,6 +39,8 @@ class History:
     """Instants of elastic jumps, s, shape (jump,)."""
     jump_energy: np.ndarray
     """Energy each jump released, J, shape (jump,)."""
+    motion: Any
+    """The motion as it was carried out: a ramp may have been turned by a force."""
     profiles: Profiles | None = None
     diagnostics: dict[str, float] = field(default_factory=dict)
     warnings: tuple[str, ...] = ()
