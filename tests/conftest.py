@@ -7,10 +7,11 @@ import pytest
 
 
 @pytest.fixture(scope="session", autouse=True)
-def compiled_solver():
+def compiled_solvers():
     import softafm.solvers.energy_run
+    import softafm.solvers.explicit_run
 
-    return softafm.solvers.energy_run
+    return softafm.solvers
 
 
 @pytest.fixture(scope="session")
