@@ -200,79 +200,126 @@ def slope(gap):
     return (LAW.pressure(gap + step) - LAW.pressure(gap - step)) / (2 * step)
 
 
-def newton_step(u, v, ac, h0):
-    """Displacement to the stationary point of Π, over the gap; lowest eigenvalue of its Hessian."""
-    gap = h0 + GAPS - u
-    gradient = MESH.stiffness @ (u - v) / ac + MESH.masses * LAW.pressure(gap)
-    hessian = MESH.stiffness / ac - np.diag(MESH.masses * slope(gap))
-    scale = 1 / np.sqrt(np.diag(MESH.stiffness) / ac)
+BEYOND = MESH.nodes[-1] ** 2 / (2 * GAPS[-1])
+"""Force beyond the mesh over 2πa², per unit of Φ there."""
+
+
+def newton_step(u, v, ac, h0, lever):
+    """Displacement to the stationary point of Π, over the gap; lowest eigenvalue of its Hessian.
+
+    ``u`` (n + 1,) ends with the deflection of a lever; ``lever`` 0 leaves its equation out.
+    """
+    n = MESH.nodes.size
+    gap = h0 + GAPS + u[n] - u[:n]
+    gradient, hessian = np.empty(n + 1), np.zeros((n + 1, n + 1))
+    push, bend = MESH.masses * LAW.pressure(gap), MESH.masses * slope(gap)
+    gradient[:n] = MESH.stiffness @ (u[:n] - v) / ac + push
+    gradient[n] = lever * u[n] - push.sum() - BEYOND * LAW.potential(gap[-1])
+    hessian[:n, :n] = MESH.stiffness / ac - np.diag(bend)
+    hessian[n, :n] = hessian[:n, n] = bend
+    hessian[n, n] = lever - bend.sum() + BEYOND * LAW.pressure(gap[-1])
+    size = n + 1 if lever else n
+    hessian = hessian[:size, :size]
+    scale = 1 / np.sqrt(np.append(np.diag(MESH.stiffness) / ac, lever or 1.0))[:size]
     lowest = np.linalg.eigvalsh(hessian * np.outer(scale, scale))[0]
-    return np.linalg.solve(hessian, gradient) / gap, lowest
+    step = np.zeros(n + 1)
+    step[:size] = np.linalg.solve(hessian, gradient[:size])
+    return (step[:n] - step[n]) / gap, lowest
 
 
-def energy(u, v, ac, h0):
-    strain = (u - v) @ MESH.stiffness @ (u - v) / (2 * ac)
-    return strain + MESH.masses @ LAW.potential(h0 + GAPS - u)
+def energy(u, v, ac, h0, lever):
+    """Π on the mesh; the lever feels a constant force from beyond it."""
+    n = MESH.nodes.size
+    strain = (u[:n] - v) @ MESH.stiffness @ (u[:n] - v) / (2 * ac) + lever * u[n] ** 2 / 2
+    return strain + MESH.masses @ LAW.potential(h0 + GAPS + u[n] - u[:n])
 
 
 surfaces = st.tuples(
     st.floats(8, 11).map(lambda x: 10**x),  # modulus
-    st.floats(-3, 6).map(lambda x: x * Z0),  # tip height
+    st.floats(-3, 6).map(lambda x: x * Z0),  # height of the base
     st.floats(-3, 1).map(lambda x: x * Z0),  # depth of the memory
     st.floats(0.5, 3),  # its width
+    st.one_of(  # stiffness of the lever, over 2πa²
+        st.just(0.0), st.floats(-2, 3).map(lambda x: 10**x / (2 * np.pi * FRAME**2))
+    ),
 )
 
 
-def settled(modulus, h0, depth, width):
+def settled(modulus, h0, depth, width, lever):
     """Inputs of an equilibrium and the stable shape the surface falls to from a gap of 1.1 z0."""
     v = depth / np.sqrt(1 + (MESH.nodes / width) ** 2)
     ac = FRAME / modulus
-    u = np.minimum(v, h0 + GAPS - 1.1 * Z0)
-    before = energy(u, v, ac, h0)
-    iterations = k.settle(u, v, ac, h0 + GAPS, MESH, PRESSURE, POTENTIAL, PARAMETERS, 1e-9)
+    u = np.append(np.minimum(v, h0 + GAPS - 1.1 * Z0), 0.0)
+    before = energy(u, v, ac, h0, lever)
+    iterations = k.settle(
+        u, v, ac, h0 + GAPS, lever, BEYOND, MESH, PRESSURE, POTENTIAL, PARAMETERS, 1e-9
+    )
     assert iterations > 0
     return v, ac, u, before
 
 
 @given(surfaces)
-@settings(deadline=None, max_examples=60)
+@settings(deadline=None, max_examples=100)
 def test_surfaces_settle_in_a_minimum_of_the_energy(surface):
-    h0 = surface[1]
+    h0, lever, n = surface[1], surface[4], MESH.nodes.size
     v, ac, u, before = settled(*surface)
-    error, lowest = newton_step(u, v, ac, h0)
+    error, lowest = newton_step(u, v, ac, h0, lever)
     assert np.abs(error).max() < 1e-8
     assert lowest > 0
-    after = energy(u, v, ac, h0)
-    assert after <= before + 1e-9 * abs(before)
-    # The stationary point is the contact problem itself: u = v - c K p.
-    pressure = LAW.pressure(h0 + GAPS - u)
+    gap = h0 + GAPS + u[n] - u[:n]
+    tail = BEYOND * LAW.potential(gap[-1])
+    after = energy(u, v, ac, h0, lever)
+    assert after - min(0, tail) * abs(u[n]) <= before + 1e-9 * abs(before) + 2 * abs(tail * u[n])
+    # The stationary point is the contact problem itself: u = v - c K p, and k q = F.
+    pressure = LAW.pressure(gap)
     influenced = ac * np.linalg.solve(MESH.stiffness, MESH.masses * pressure)
-    assert np.allclose(u, v - influenced, rtol=0, atol=1e-6 * Z0 + 1e-6 * np.abs(influenced).max())
+    wanted = v - influenced
+    assert np.allclose(u[:n], wanted, rtol=0, atol=1e-6 * (Z0 + np.abs(influenced).max()))
+    if lever:
+        force = MESH.masses @ pressure + tail
+        assert lever * u[n] == pytest.approx(force, rel=1e-6, abs=1e-6 * abs(tail))
+    else:
+        assert u[n] == 0
+
+
+def equilibrate(u, v, ac, h0, lever=0.0, rest=0.0, accuracy=1e-7):
+    n = MESH.nodes.size
+    work = np.empty((5, n + 1))
+    iterations = k.equilibrate(
+        u, v, ac, h0 + GAPS, lever, rest, BEYOND,
+        MESH, PRESSURE, POTENTIAL, PARAMETERS, 0.3 * Z0, accuracy, np.empty((n + 1, n + 1)), work,
+    )  # fmt: skip
+    return iterations, work[0, :n], work[1, :n]
 
 
 @given(surfaces, st.floats(-0.02, 0.02), seeds)
-@settings(deadline=None, max_examples=60)
+@settings(deadline=None, max_examples=100)
 def test_newton_returns_to_a_stable_shape(surface, disturbance, seed):
-    h0 = surface[1]
+    h0, lever, n = surface[1], surface[4], MESH.nodes.size
     v, ac, u, _ = settled(*surface)
-    _, lowest = newton_step(u, v, ac, h0)
-    gap = h0 + GAPS - u
-    guess = u + min(1, 10 * lowest) * disturbance * gap * np.exp(-(MESH.nodes**2))
-    n = u.size
-    work = np.empty((4, n))
-    iterations = k.equilibrate(
-        guess, v, ac, h0 + GAPS, MESH, PRESSURE, PARAMETERS, 0.3 * Z0, 1e-7, np.empty((n, n)), work
-    )
+    _, lowest = newton_step(u, v, ac, h0, lever)
+    gap = h0 + GAPS + u[n] - u[:n]
+    guess = u.copy()
+    guess[:n] += min(1, 10 * lowest) * disturbance * gap * np.exp(-(MESH.nodes**2))
+    iterations, found_gap, found_pressure = equilibrate(guess, v, ac, h0, lever)
     if iterations < 0:
         # Near a fold the disturbed shape may already be unstable: that must be true then.
         assert lowest < 0.1
         return
-    error, lowest = newton_step(guess, v, ac, h0)
+    error, lowest = newton_step(guess, v, ac, h0, lever)
     assert np.abs(error).max() < 1e-8
     assert lowest > 0
-    assert np.allclose(work[0], h0 + GAPS - guess, rtol=1e-12)
-    scale = np.abs(LAW.pressure(work[0])).max()
-    assert np.allclose(work[1], LAW.pressure(work[0]), rtol=1e-7, atol=1e-7 * scale)
+    assert np.allclose(found_gap, h0 + GAPS + guess[n] - guess[:n], rtol=1e-12)
+    scale = np.abs(LAW.pressure(found_gap)).max()
+    assert np.allclose(found_pressure, LAW.pressure(found_gap), rtol=1e-7, atol=1e-7 * scale)
+
+
+def test_a_lever_bent_before_pulls_from_there():
+    """κ (q − rest) = F: with the force of a far surface negligible, q stays at its rest."""
+    u = np.zeros(MESH.nodes.size + 1)
+    iterations, *_ = equilibrate(u, u[:-1].copy(), FRAME / 1e10, 40 * Z0, 1e16, 2 * Z0)
+    assert iterations > 0
+    assert u[-1] == pytest.approx(2 * Z0, rel=1e-2)
 
 
 def test_newton_refuses_unstable_and_pierced_guesses():
@@ -280,17 +327,23 @@ def test_newton_refuses_unstable_and_pierced_guesses():
     soft = FRAME / 1e7
 
     def attempt(h0):
-        hessian, work = np.empty((n, n)), np.empty((4, n))
-        return k.equilibrate(
-            np.zeros(n), np.zeros(n), soft, h0 + GAPS, MESH, PRESSURE, PARAMETERS, 0.3 * Z0,
-            1e-7, hessian, work,
-        )  # fmt: skip
+        return equilibrate(np.zeros(n + 1), np.zeros(n), soft, h0)[0]
 
-    assert newton_step(np.zeros(n), np.zeros(n), soft, 1.5 * Z0)[1] < 0
+    assert newton_step(np.zeros(n + 1), np.zeros(n), soft, 1.5 * Z0, 0.0)[1] < 0
     assert attempt(1.5 * Z0) < 0
     assert attempt(0.2 * Z0) < 0
     assert attempt(-Z0) < 0
     assert attempt(30 * Z0) > 0
+
+
+def test_newton_refuses_a_lever_about_to_snap():
+    """Stable on a stiff lever, not on one softer than the gradient of the attraction."""
+    n, stiff = MESH.nodes.size, FRAME / 1e11
+    total = MESH.masses @ slope(3 * Z0 + GAPS)
+    assert total > 0
+    for factor, stable in ((20.0, True), (0.3, False)):
+        iterations, *_ = equilibrate(np.zeros(n + 1), np.zeros(n), stiff, 3 * Z0, factor * total)
+        assert (iterations > 0) == stable
 
 
 def test_force_has_the_tail_of_a_flat_surface():
@@ -334,12 +387,12 @@ def test_steps_equal_those_of_a_plain_newton_method():
     height, height_parameters = motion.compiled_height
     profile, tip_parameters = TIP.compiled_profile
     parameters = k.Parameters(
-        height_parameters, tip_parameters, PARAMETERS, compliance, retardation
+        height_parameters, tip_parameters, PARAMETERS, compliance, retardation, np.zeros(2)
     )
     controls = k.Controls(
         end=1.0, shortest_step=step / 10, longest_step=step, top_speed=1e-300, open_frame=FRAME,
         gap_of_tension=LAW.gap_of_largest_tension, prediction=1e3, memory=1e3, force=1e3,
-        newton=1e-11, slack=2.0, finest=0.0, coarsest=np.inf, most_tries=1e6,
+        newton=1e-11, slack=2.0, finest=0.0, coarsest=np.inf, most_tries=1e6, trigger=np.inf,
     )  # fmt: skip
     n, modes = MESH.nodes.size, retardation.size
     fields, clock = np.zeros((k.MEMORY + modes, n)), np.zeros(k.CLOCK_SIZE)

@@ -82,7 +82,7 @@ class Energy:
                 progress(fraction, f"{fraction:.0%} of the motion")
         history = run.history(perf_counter() - started)
         for text in history.warnings:
-            warnings.warn(text, AccuracyWarning, stacklevel=3)
+            warnings.warn(text, AccuracyWarning, stacklevel=4)  # the caller of the mode
         return history
 
     def expected_seconds(self, contact, motion) -> float:

@@ -34,7 +34,7 @@ class Run:
             open_frame=self.surface.open_frame,
             gap_of_tension=gap,
             prediction=0.03 * self.strictness**0.7,
-            memory=0.01 * self.strictness,
+            memory=min(0.01 * self.strictness, 0.05),
             force=0.01 * self.strictness,
             newton=self.surface.accuracy,
             slack=2.0,

@@ -77,7 +77,7 @@ def march(
             progress(fraction, f"{fraction:.0%} of the motion")
     history = run.history(perf_counter() - started)
     for text in history.warnings:
-        warnings.warn(text, AccuracyWarning, stacklevel=4)
+        warnings.warn(text, AccuracyWarning, stacklevel=5)  # the caller of the mode
     return history
 
 
