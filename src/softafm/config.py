@@ -10,8 +10,9 @@ from typing import TYPE_CHECKING, Any
 from pydantic import ValidationError
 
 from softafm import schema
+from softafm.cantilever import Cantilever
 from softafm.contact import Contact
-from softafm.modes.start import refuse_start_inside
+from softafm.modes.start import refuse_start_inside, refuse_unable
 from softafm.refusals import ConfigError, as_written, nearest, one_of, problem, shown, unknown
 
 if TYPE_CHECKING:
@@ -29,9 +30,11 @@ class Experiment:
     Parameters
     ----------
     mode
-        ``"force-distance"`` or ``"tapping-cycle"``.
+        ``"force-distance"``, ``"force-spectroscopy"`` or ``"tapping-cycle"``.
     contact, motion
-        What touches, and how the tip moves.
+        What touches, and how the tip moves, or the base of its cantilever.
+    cantilever
+        What carries the tip, in a mode that needs one.
     solver
         An object from ``softafm.solvers``, or None for the default one.
     tolerance, profiles
@@ -43,6 +46,7 @@ class Experiment:
     mode: str
     contact: Contact
     motion: Any
+    cantilever: Cantilever | None = None
     solver: Any = None
     tolerance: float = 1e-2
     profiles: bool = False
@@ -67,6 +71,10 @@ class Experiment:
         try:
             if self.mode == "force-distance":
                 return sa.force_distance(self.contact, self.motion, **options)
+            if self.cantilever is not None:
+                return sa.force_spectroscopy(
+                    self.contact, self.cantilever, self.motion, **options
+                )
             motion = self.motion
             return sa.tapping_cycle(
                 self.contact,
@@ -170,7 +178,7 @@ def _override_value(text: str) -> Any:
 def _experiment(document: Mapping[str, Any], folder: Path) -> Experiment:
     problems: list[str] = []
     mode = document.get("mode")
-    known = ["mode", *_TABLES, *_OPTIONAL_TABLES]
+    known = ["mode", *_TABLES, "cantilever", *_OPTIONAL_TABLES]
     problems += [unknown(key, known, key) for key in document if key not in known]
     modes = list(schema.MOTIONS)
     if mode is None:
@@ -179,15 +187,21 @@ def _experiment(document: Mapping[str, Any], folder: Path) -> Experiment:
         problems.append(
             f"mode = {shown(mode)}: is not available in this version; must be {one_of(modes)}"
         )
-    elif not isinstance(mode, str) or mode not in modes:
+    elif mode not in modes:
         problems.append(f"mode = {shown(mode)}: {nearest(mode, modes)}")
 
+    tables = [*_TABLES, *(name for name in _OPTIONAL_TABLES if name in document)]
+    if mode not in modes:
+        tables.remove("motion")
+    elif mode in schema.WITH_CANTILEVER:
+        tables.append("cantilever")
+    elif "cantilever" in document:
+        problems.append(
+            f"cantilever: of no use with mode = '{mode}'; leave it out, or use the mode "
+            f"{one_of(schema.WITH_CANTILEVER)}"
+        )
     built: dict[str, Any] = {}
-    for name in (*_TABLES, *_OPTIONAL_TABLES):
-        if name == "motion" and (not isinstance(mode, str) or mode not in modes):
-            continue
-        if name in _OPTIONAL_TABLES and name not in document:
-            continue
+    for name in tables:
         try:
             built[name] = _build(name, document, mode, folder)
         except ConfigError as error:
@@ -207,10 +221,16 @@ def _experiment(document: Mapping[str, Any], folder: Path) -> Experiment:
     except ValueError as error:
         key = next(key for key in ("start", "mean_height", "file") if key in motion)
         raise ConfigError([f"motion.{key} = {shown(motion[key])}: {error}"]) from None
+    cantilever = built.get("cantilever")
+    try:
+        refuse_unable(solver, built["motion"], cantilever)
+    except ValueError as error:
+        raise ConfigError([as_written("motion", motion, error) or str(error)]) from None
     return Experiment(
         mode=str(mode),
         contact=contact,
         motion=built["motion"],
+        cantilever=cantilever,
         solver=solver,
         tolerance=run.tolerance,
         profiles=run.profiles,
@@ -225,16 +245,17 @@ def _build(name: str, document: Mapping[str, Any], mode: Any, folder: Path) -> A
     written = document[name]
     if not isinstance(written, dict):
         raise ConfigError([f"{name} = {shown(written)}: must be a table, [{name}]"])
-    if name == "run":
-        return _validated(name, schema.Run, written, None, folder)
-    chooser, choices = schema.CHOICES.get(name) or ("shape", schema.MOTIONS[mode])
-    names = list(choices)
-    choice = written.get(chooser, names[0] if name == "motion" else None)
-    if choice is None:
-        raise ConfigError([f"{name}.{chooser}: missing; must be {one_of(names)}"])
-    if not isinstance(choice, str) or choice not in choices:
-        raise ConfigError([f"{name}.{chooser} = {shown(choice)}: {nearest(choice, names)}"])
-    table = _validated(name, choices[choice], written, chooser, folder)
+    if name in schema.PLAIN:
+        table = _validated(name, schema.PLAIN[name], written, None, folder)
+    else:
+        chooser, choices = schema.CHOICES.get(name) or ("shape", schema.MOTIONS[mode])
+        names = list(choices)
+        choice = written.get(chooser, names[0] if name == "motion" else None)
+        if choice is None:
+            raise ConfigError([f"{name}.{chooser}: missing; must be {one_of(names)}"])
+        if not isinstance(choice, str) or choice not in choices:
+            raise ConfigError([f"{name}.{chooser} = {shown(choice)}: {nearest(choice, names)}"])
+        table = _validated(name, choices[choice], written, chooser, folder)
     try:
         return table.build()
     except (ValueError, ArithmeticError) as error:

@@ -25,13 +25,13 @@ class Triangle:
     dwell
         Time at the lowest height, s.
     setpoint_force
-        Force that turns the ramp when it is reached before ``turn``, N; None for no such trigger.
+        Repulsion that turns the ramp when it is reached before ``turn``, N; None for no trigger.
 
     Raises
     ------
     ValueError
-        If a value is not finite, the speed is not above zero, the dwell is below zero, or the turn
-        is not below the start.
+        If a value is not finite, the speed or the setpoint is not above zero, the dwell is below
+        zero, or the turn is not below the start.
     """
 
     kind: ClassVar[str] = "triangle"
@@ -51,7 +51,7 @@ class Triangle:
         if self.dwell < 0:
             raise ValueError(f"dwell = {self.dwell:g} s: must be at least 0")
         if self.setpoint_force is not None:
-            force = finite("setpoint_force", self.setpoint_force, "N")
+            force = positive("setpoint_force", self.setpoint_force, "N")
             object.__setattr__(self, "setpoint_force", force)
 
     @classmethod

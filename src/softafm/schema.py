@@ -13,9 +13,10 @@ from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, ValidationIn
 
 from softafm import units
 from softafm._validate import finite, tolerance_of
+from softafm.cantilever import Cantilever
 from softafm.measured import read_trajectory
 from softafm.motions import Sine, Trajectory, Triangle
-from softafm.refusals import one_of
+from softafm.refusals import all_of, one_of
 from softafm.rheology import Elastic, GeneralizedKelvinVoigt, StandardLinearSolid
 from softafm.solvers.attard import Attard
 from softafm.solvers.energy import Energy
@@ -95,6 +96,8 @@ Time = Annotated[float, _read(units.TIME), _described(units.TIME)]
 Speed = Annotated[float, _read(units.SPEED), _described(units.SPEED)]
 Frequency = Annotated[float, _read(units.FREQUENCY), _described(units.FREQUENCY)]
 Modulus = Annotated[float, _read(units.MODULUS), _described(units.MODULUS)]
+Newtons = Annotated[float, _read(units.FORCE), _described(units.FORCE)]
+Stiffness = Annotated[float, _read(units.STIFFNESS), _described(units.STIFFNESS)]
 Joules = Annotated[float, _read(units.ENERGY), _described(units.ENERGY)]
 JoulesPerArea = Annotated[float, _read(units.ENERGY_PER_AREA), _described(units.ENERGY_PER_AREA)]
 Compliances = Annotated[
@@ -125,7 +128,7 @@ class Table(BaseModel):
         values = {k: getattr(self, k) for a in present for k in a if getattr(self, k) is not None}
         if len(present) == 1 and len(values) == len(present[0]):
             return values
-        choices = ", or ".join(" and ".join(a) for a in alternatives)
+        choices = ", or ".join(map(all_of, alternatives))
         raise ValueError(f"give {choices}; found {', '.join(values) or 'none of them'}")
 
 
@@ -202,14 +205,22 @@ class LennardJonesSurface(Table):
 
 
 class TriangleMotion(Table):
-    """``[motion] shape = "triangle"``."""
+    """``[motion] shape = "triangle"``: a ramp, or one period of a wave."""
 
-    start: Length
-    turn: Length
-    speed: Speed
+    start: Length | None = None
+    turn: Length | None = None
+    speed: Speed | None = None
+    mean_height: Length | None = None
+    amplitude: Length | None = None
+    frequency: Frequency | None = None
+    dwell: Time = 0.0
+    setpoint_force: Newtons | None = None
 
     def build(self) -> Triangle:
-        return Triangle(start=self.start, turn=self.turn, speed=self.speed)
+        ramp, wave = ("start", "turn", "speed"), ("mean_height", "amplitude", "frequency")
+        given = self.given(ramp, wave)
+        triangle = Triangle if "start" in given else Triangle.from_frequency
+        return triangle(**given, dwell=self.dwell, setpoint_force=self.setpoint_force)
 
 
 class SineMotion(Table):
@@ -234,6 +245,17 @@ class TrajectoryMotion(Table):
             return read_trajectory(self.file)
         except ValueError as error:
             raise ValueError(f"file = {self.file.name}: {error}") from error
+
+
+class CantileverTable(Table):
+    """``[cantilever]``."""
+
+    stiffness: Stiffness
+    quality_factor: Number | None = None
+    frequency: Frequency | None = None
+
+    def build(self) -> Cantilever:
+        return Cantilever(self.stiffness, self.quality_factor, self.frequency)
 
 
 class Run(Table):
@@ -308,15 +330,24 @@ CHOICES: dict[str, tuple[str, dict[str, type[Table]]]] = {
 }
 """For each table the key that chooses, and what it can choose."""
 
+PLAIN: dict[str, type[Table]] = {"cantilever": CantileverTable, "run": Run}
+"""Tables without a choice."""
+
+_ANY_MOTION: dict[str, type[Table]] = {
+    "triangle": TriangleMotion,
+    "sine": SineMotion,
+    "trajectory": TrajectoryMotion,
+}
+
 MOTIONS: dict[str, dict[str, type[Table]]] = {
-    "force-distance": {
-        "triangle": TriangleMotion,
-        "sine": SineMotion,
-        "trajectory": TrajectoryMotion,
-    },
+    "force-distance": _ANY_MOTION,
+    "force-spectroscopy": _ANY_MOTION,
     "tapping-cycle": {"sine": SineMotion},
 }
 """For each mode the shapes of motion it takes, the default one first."""
 
-ANNOUNCED = ("force-spectroscopy", "approach-curve")
+WITH_CANTILEVER = ("force-spectroscopy",)
+"""Modes that need a cantilever; the others have no use for one."""
+
+ANNOUNCED = ("approach-curve",)
 """Modes that the format knows and this version cannot run."""

@@ -14,7 +14,7 @@ _FACTOR = r"[A-Za-zµμΩÅ°%]+(?:(?:\^|\*\*)-?\d|⁻?[¹²³])?"
 _UNIT = re.compile(rf"(?:1? ?/ ?)?{_FACTOR}(?: ?[*/·] ?{_FACTOR}| {_FACTOR})*")
 _LONGEST_UNIT = 40
 _PREFIXES = {-18: "a", -15: "f", -12: "p", -9: "n", -6: "µ", -3: "m", 0: "", 3: "k", 6: "M", 9: "G"}
-_PREFIXED = {"m", "s", "N", "J", "Pa", "Hz", "m/s", "J/m²"}
+_PREFIXED = {"m", "s", "N", "J", "Pa", "Hz", "m/s", "J/m²", "N/m"}
 
 
 @dataclass(frozen=True)
@@ -39,6 +39,8 @@ MODULUS = Kind("a modulus", "Pa", "2 GPa")
 COMPLIANCE = Kind("a compliance", "1/Pa", "0.5 1/GPa")
 ENERGY = Kind("an energy", "J", "1e-19 J")
 ENERGY_PER_AREA = Kind("an energy per area", "J/m^2", "30 mJ/m^2")
+FORCE = Kind("a force", "N", "5 nN")
+STIFFNESS = Kind("a stiffness", "N/m", "28 N/m")
 
 
 @cache

@@ -13,6 +13,7 @@ def carry(contact, motion, solver, tolerance, profiles, progress, **options):
     tolerance = tolerance_of(tolerance)
     solver = Energy() if solver is None else solver
     refuse_start_inside(contact, motion)
+    refuse_unable(solver, motion, options.get("stiffness"))
     with reporting(progress) as report:
         history = solver.solve(
             contact, motion, tolerance=tolerance, profiles=profiles, progress=report, **options
@@ -28,4 +29,23 @@ def refuse_start_inside(contact, motion) -> None:
         raise ValueError(
             f"start height = {start:g} m: must be above the equilibrium gap, {gap:g} m "
             "(the tip would start inside the surface)"
+        )
+
+
+def refuse_unable(solver, motion, lever=None) -> None:
+    """Raise ValueError if a solver of fixed steps is to bend a lever, or to turn at a force.
+
+    ``lever`` is anything but None where one carries the tip.
+    """
+    if solver is None or solver.adaptive:
+        return
+    if lever is not None:
+        raise ValueError(
+            f"solver = '{solver.kind}': moves the tip itself, not a cantilever; must be 'energy'"
+        )
+    force = getattr(motion, "setpoint_force", None)
+    if force is not None:
+        raise ValueError(
+            f"setpoint_force = {force:g} N: the solver '{solver.kind}' must know the motion "
+            "beforehand; leave it out, or use the solver 'energy'"
         )

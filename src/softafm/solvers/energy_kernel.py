@@ -611,7 +611,7 @@ def advance(
                 bend = (load_new[i] + load_earlier[i] / ratio) / (1.0 + ratio) - load[i] / ratio
                 scratch[i] = curvature * bend / (frame * c)
                 # What is lost in a stiff contact stays in the memory, and comes out later.
-                error = max(error, abs(curvature * bend) / (2.0 * controls.memory * gap[i]))
+                error = max(error, abs(curvature * bend) / (controls.memory * gap[i]))
             # What an error of the memory does to the surface now, which is much near a fold.
             miss = newton_work[3]
             multiply(mesh.stiffness, scratch, miss[:n])
