@@ -5,7 +5,7 @@ matter (``landmarks``), how fast it gets (``top_speed``), and its height as a co
 """
 
 from dataclasses import dataclass, replace
-from typing import ClassVar
+from typing import ClassVar, Literal
 
 import numpy as np
 
@@ -122,7 +122,8 @@ class Sine:
     frequency
         Frequency f, Hz.
     cycles
-        Number of periods, at least 1.
+        Number of periods, at least 1, or ``"steady"``: one period, after so many that the sample's
+        memory ends it as it began.
 
     Raises
     ------
@@ -134,26 +135,40 @@ class Sine:
     mean_height: float
     amplitude: float
     frequency: float
-    cycles: int = 1
+    cycles: int | Literal["steady"] = 1
 
     def __post_init__(self):
         object.__setattr__(self, "mean_height", finite("mean_height", self.mean_height, "m"))
         object.__setattr__(self, "amplitude", positive("amplitude", self.amplitude, "m"))
         object.__setattr__(self, "frequency", positive("frequency", self.frequency, "Hz"))
-        cycles = finite("cycles", self.cycles, "periods")
-        if isinstance(self.cycles, bool) or cycles != int(cycles) or cycles < 1:
-            raise ValueError(f"cycles = {self.cycles!r}: must be a whole number, at least 1")
-        object.__setattr__(self, "cycles", int(cycles))
+        if isinstance(self.cycles, str) and self.cycles == "steady":
+            return
+        number = isinstance(self.cycles, int | float) and not isinstance(self.cycles, bool)
+        if not number or self.cycles != self.cycles // 1 or self.cycles < 1:
+            raise ValueError(
+                f"cycles = {self.cycles!r}: must be a whole number, at least 1, or 'steady'"
+            )
+        object.__setattr__(self, "cycles", int(self.cycles))
+
+    @property
+    def steady(self) -> bool:
+        """Whether the motion is repeated until the sample's memory is periodic."""
+        return self.cycles == "steady"
+
+    @property
+    def periods(self) -> int:
+        """Number of periods that are reported."""
+        return 1 if self.cycles == "steady" else self.cycles
 
     @property
     def breaks(self) -> np.ndarray:
         """First and last time, s: a sine is smooth between them."""
-        return np.array([0.0, self.cycles / self.frequency])
+        return np.array([0.0, self.periods / self.frequency])
 
     @property
     def landmarks(self) -> np.ndarray:
         """Times of the turning points inside the motion, s."""
-        return np.arange(1, 2 * self.cycles) / (2 * self.frequency)
+        return np.arange(1, 2 * self.periods) / (2 * self.frequency)
 
     @property
     def top_speed(self) -> float:

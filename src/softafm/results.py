@@ -32,11 +32,12 @@ VARIABLES = {
     "pressure": ("Pa", "pressure on the surface, positive = repulsive"),
     "force_max": ("N", "largest force"),
     "force_min": ("N", "smallest force"),
-    "force_min_approach": ("N", "smallest force before the lowest tip height"),
-    "loop_energy": ("J", "energy dissipated over the motion, -∮F dh0"),
+    "force_min_approach": ("N", "smallest force before the lowest height"),
+    "loop_energy": ("J", "energy dissipated in the motion, -∮F dh0 or -∮F dZ"),
     "viscous_loss": ("J", "energy dissipated in the sample"),
     "virial": ("J", "virial, mean of F·(h0 - mean height) over a cycle"),
     "dissipation": ("J", "energy dissipated in a cycle, -∮F dh0"),
+    "cycles_run": ("", "cycles that were run"),
     "cycle_virial": ("J", "virial of each cycle"),
     "cycle_dissipation": ("J", "energy dissipated in each cycle"),
     "contact_time": ("s", "time in contact in a cycle"),
@@ -133,7 +134,7 @@ def save(result: "Dataset", path, *, overwrite: bool = False) -> None:
     """
     # Formed in memory: on a full disk HDF5 itself may take the process down with it.
     content = result.to_netcdf(engine="h5netcdf")
-    _write(path, overwrite, lambda part: Path(part).write_bytes(content))
+    write_whole(path, overwrite, lambda part: Path(part).write_bytes(content))
 
 
 def load(path) -> "Dataset":
@@ -175,7 +176,7 @@ def export(result: "Dataset", path, *, overwrite: bool = False) -> None:
     if suffix == ".h5":
         save(result, path, overwrite=overwrite)
     elif suffix == ".csv":
-        _write(path, overwrite, lambda part: _write_csv(result, part))
+        write_whole(path, overwrite, lambda part: _write_csv(result, part))
     else:
         raise ValueError(f"{path}: suffix {suffix!r} is not known, must be .csv or .h5")
 
@@ -192,7 +193,7 @@ def _write_csv(result, path):
         np.savetxt(out, rows, fmt="%.9g", delimiter=",", header=names, comments="")
 
 
-def _write(path, overwrite, write):
+def write_whole(path, overwrite, write):
     """Let ``write`` fill a temporary file beside ``path``, then give it its name."""
     path = Path(path)
     if os.path.lexists(path) and not overwrite:  # a dangling link is somebody's, too

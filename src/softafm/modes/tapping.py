@@ -1,7 +1,7 @@
 """Tapping: the tip oscillates with given amplitude about a given mean height."""
 
 from itertools import pairwise
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
@@ -20,7 +20,7 @@ def tapping_cycle(
     amplitude: float,
     mean_height: float,
     frequency: float,
-    cycles: int = 1,
+    cycles: int | Literal["steady"] = "steady",
     *,
     solver=None,
     tolerance: float = 1e-2,
@@ -38,14 +38,16 @@ def tapping_cycle(
     frequency
         Frequency f, Hz.
     cycles
-        Number of cycles.
+        Number of cycles from a surface flat and relaxed, or ``"steady"``: cycles repeat, with the
+        sample's memory accelerated towards a periodic one, until it ends a cycle as it began it.
     solver, tolerance, profiles, progress
         As for ``force_distance``.
 
     Returns
     -------
     xarray.Dataset
-        The curves of ``force_distance`` over all cycles. Scalars of the last cycle: ``virial``
+        The curves of ``force_distance`` over all cycles, or the steady one; ``cycles_run`` says how
+        many it took. Scalars of the last cycle: ``virial``
         (mean of F·(h0 − mean height); Rajabifar et al. 2021, equation 30), ``dissipation``
         (−∮F dh0, equation 29), ``force_max``, ``force_min``, ``force_min_approach``,
         ``contact_time``, ``indentation``; ``cycle_virial`` and ``cycle_dissipation`` of every
@@ -62,7 +64,7 @@ def tapping_cycle(
     solver, tolerance, history = carry(contact, motion, solver, tolerance, profiles, progress)
 
     period = 1 / motion.frequency
-    tops = period * np.arange(motion.cycles + 1)
+    tops = period * np.arange(motion.periods + 1)
 
     def each_cycle(weight):
         return np.array([history.integrate(history.force, weight, a, b) for a, b in pairwise(tops)])
@@ -76,6 +78,7 @@ def tapping_cycle(
     observables = {
         "virial": ((), virial[-1]),
         "dissipation": ((), dissipation[-1]),
+        "cycles_run": ((), history.diagnostics.get("cycles", motion.periods)),
         "cycle_virial": ("cycle", virial),
         "cycle_dissipation": ("cycle", dissipation),
         "force_max": ((), history.extreme(force, 1, start)),

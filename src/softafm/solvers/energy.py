@@ -77,7 +77,7 @@ class Energy:
             from softafm.solvers.energy_run import Run
 
             run = Run(self, contact, motion, stiffness or 0.0, tolerance, profiles)
-        for fraction in run.steps():
+        for fraction in run.cycles() if getattr(motion, "steady", False) else run.steps():
             if progress is not None:
                 progress(fraction, f"{fraction:.0%} of the motion")
         history = run.history(perf_counter() - started)
@@ -87,11 +87,11 @@ class Energy:
 
     def expected_seconds(self, contact, motion) -> float:
         """Order of magnitude of a run at the default tolerance, s on one core, as measured."""
-        cycles = getattr(motion, "cycles", 1)
+        cycles = getattr(motion, "periods", 1)
         return 1e-2 * cycles + 1e-4 * cohesive_lengths_crossed(contact, motion)
 
 
 def cohesive_lengths_crossed(contact, motion) -> float:
     """Return how many cohesive lengths the contact edge crosses at most, in and out each cycle."""
     radius = contact.contact_radius(lowest_height(motion))
-    return 2 * radius / contact.cohesive_length * getattr(motion, "cycles", 1)
+    return 2 * radius / contact.cohesive_length * getattr(motion, "periods", 1)

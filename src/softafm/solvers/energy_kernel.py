@@ -82,6 +82,21 @@ class Parameters(NamedTuple):
     lever: np.ndarray
 
 
+class Background(NamedTuple):
+    """Memory from before ``since``, s, which only fades: y_m = values_m e^(−(t − since)/τ_m).
+
+    ``values`` (modes, nodes), or none, live on a mesh of this edge spacing and growth that ends at
+    ``end`` in a frame of radius ``frame``, m.
+    """
+
+    values: np.ndarray
+    frame: float
+    end: float
+    edge_spacing: float
+    growth: float
+    since: float
+
+
 class Controls(NamedTuple):
     """What steers ``advance``: times s, lengths m, speed m/s, the rest dimensionless.
 
@@ -111,6 +126,7 @@ class Controls(NamedTuple):
 
 MESH = types.NamedTuple((_CONST, _CONST, _CONST2, float64, float64), Mesh)
 PARAMETERS = types.NamedUniTuple(_V, len(Parameters._fields), Parameters)
+BACKGROUND = types.NamedTuple((_M, float64, float64, float64, float64, float64), Background)
 CONTROLS = types.NamedUniTuple(float64, len(Controls._fields), Controls)
 
 
@@ -484,17 +500,32 @@ def _move_clock(clock, step, frame, edge, force, deflection):
     clock[BEFORE], clock[LAST] = clock[LAST], step
 
 
+@njit((BACKGROUND, float64, float64, _V, _CONST, _M), cache=True)
+def recall(background, time, frame, retardation, nodes, memory):
+    """Memory of the background at ``time`` on the nodes of a frame, into rows of ``memory``."""
+    modes, n = background.values.shape
+    for m in range(modes):
+        transfer(
+            background.values[m], n, background.end, background.edge_spacing, background.growth,
+            frame / background.frame, nodes, memory[m],
+        )  # fmt: skip
+        fading = exp(-(time - background.since) / retardation[m])
+        for i in range(nodes.size):
+            memory[m, i] *= fading
+
+
 @njit(
     int64(
         pointer(HEIGHT), pointer(PROFILE), pointer(PRESSURE), pointer(POTENTIAL), PARAMETERS,
-        MESH, CONTROLS, _M, _V, _M, _M,
+        BACKGROUND, MESH, CONTROLS, _M, _V, _M, _M,
     ),
     cache=True,
     fastmath=_FAST,
 )  # fmt: skip
 def advance(
-    height, profile, law, potential, parameters, mesh, controls, fields, clock, records, shapes
-):
+    height, profile, law, potential, parameters, background, mesh, controls, fields, clock, records,
+    shapes,
+):  # fmt: skip
     """Step the surface in time until ``controls.end``, full records, a need to remesh, or FALL: no
     stable shape within the shortest step, which is not taken.
 
@@ -512,7 +543,7 @@ def advance(
     v, guess, standoff, scratch = work[0], work[1], work[2], work[3]
     load, load_earlier, load_new, tip = work[4], work[5], work[6], work[7]
     u = np.empty(n + 1)
-    memory = np.empty((modes, n))
+    memory, old = np.empty((modes, n)), np.zeros((modes, n))
     remember = np.empty((modes, 5))
     weights = np.empty(3)
     count = 1
@@ -547,6 +578,8 @@ def advance(
             load_earlier[:] = 0.0
         memory_weights(step, clock[LAST], order, compliance, retardation, remember)
 
+        recall(background, clock[TIME] + step, frame, retardation, mesh.nodes, old)
+
         # The step is an elastic contact of compliance c on a surface displaced by v.
         c = compliance[0]
         v[:] = 0.0
@@ -558,7 +591,7 @@ def advance(
                     + remember[m, _EARLIER] * load_earlier[i]
                     + remember[m, _NOW] * load[i]
                 )
-                v[i] -= compliance[m + 1] * memory[m, i]
+                v[i] -= compliance[m + 1] * (memory[m, i] + old[m, i])
         for i in range(n):
             scratch[i] = frame * mesh.nodes[i]
         profile(scratch, parameters.tip, tip, n)
@@ -639,7 +672,7 @@ def advance(
         for m in range(modes):
             for i in range(n):
                 memory[m, i] += remember[m, _NEW] * load_new[i]
-                guess[i] = load_new[i] - memory[m, i]
+                guess[i] = load_new[i] - memory[m, i] - old[m, i]
                 fields[MEMORY + m, i] = memory[m, i]
             multiply(mesh.stiffness, guess, scratch)
             product = 0.0

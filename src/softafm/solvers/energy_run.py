@@ -11,9 +11,11 @@ from softafm.kernels import still
 from softafm.solvers import energy_kernel as k
 from softafm.solvers.energy_surface import Surface
 from softafm.solvers.history import History
+from softafm.solvers.periodic import PeriodicMemory
 from softafm.solvers.shapes import Shape, on_common_radii
 
 _CHUNK = 256
+_MOST_CYCLES = 300
 _MOST_TRIES_IN_A_FALL = 5000.0
 
 
@@ -49,6 +51,7 @@ class Run:
         self.shapes: list[Shape] | None = [] if keep_shapes else None
         self.coarsest = 0.0, 0.0
         self.slips, self.end_of_slip = 0, -np.inf
+        self.cycle, self.unsteady = 1, 0.0
 
     def steps(self) -> Iterator[float]:
         """Run, yielding the fraction of the motion done at every return of the compiled loop."""
@@ -81,6 +84,26 @@ class Run:
                 if outcome == k.TRIGGERED:
                     self._turn()
                 yield (surface.time - first) / (self.motion.breaks[-1] - first)
+
+    def cycles(self) -> Iterator[float]:
+        """Run the motion over and over, until the memory ends a cycle as it began it.
+
+        Only the last cycle is kept. Yields as ``steps``.
+        """
+        surface, start = self.surface, self.surface.time
+        modes, times = surface.parameters.compliance[1:], surface.parameters.retardation
+        periodic = PeriodicMemory(self.motion.breaks[-1] - start, modes, times)
+        memory = np.zeros_like(surface.fields[k.MEMORY :])
+        for self.cycle in range(1, _MOST_CYCLES + 1):
+            self.chunks.clear()
+            if self.shapes is not None:
+                self.shapes.clear()
+            yield from self.steps()
+            memory, off = periodic.next_start(memory, surface.rewind(start))
+            self.unsteady = off / surface.gap_of_tension
+            if self.unsteady <= 1e-2 * self.strictness:
+                return
+            surface.remember(memory)
 
     def _next_stop(self):
         """Return the next instant that a step has to meet, s, or None at the end."""
@@ -116,7 +139,7 @@ class Run:
         controls = self.controls._replace(end=float(stop), finest=finest, coarsest=coarsest)
         shapes = np.empty((0 if self.shapes is None else _CHUNK, surface.mesh.nodes.size))
         outcome = k.advance(
-            *surface.functions, surface.parameters, surface.mesh, controls,
+            *surface.functions, surface.parameters, surface.background, surface.mesh, controls,
             surface.fields, surface.clock, self.records, shapes,
         )  # fmt: skip
         count = int(self.records[0, 0])
@@ -152,11 +175,15 @@ class Run:
         steps is left to the descent in energy that follows.
         """
         surface, clock, controls = self.surface, self.surface.clock, self.controls
-        functions, parameters = surface.functions, surface.parameters
+        functions, parameters, background = (
+            surface.functions, surface.parameters, surface.background
+        )  # fmt: skip
         instantaneous, modes = parameters.compliance[0], parameters.compliance[1:]
         stiff = min(0.2, (0.4 / self.contact.tabor_instantaneous) ** 1.5) * instantaneous
         delayed = instantaneous - stiff
         surface.functions = (still, *functions[1:])
+        # The clock of the fall starts at 0; the past goes on fading from where it is.
+        surface.background = background._replace(since=background.since - time)
         surface.fields = np.vstack([surface.fields, surface.fields[k.LOAD]])
         for patience in range(8):
             creep_time = 10.0 ** (-4 - patience) * duration
@@ -184,6 +211,7 @@ class Run:
             if outcome != k.FINISHED or behind < 1e-4 * surface.gap_of_tension:
                 break
         surface.functions, surface.parameters, self.controls = functions, parameters, controls
+        surface.background = background
         surface.fields = surface.fields[:-1].copy()
 
     def _keep(self, records, shapes):
@@ -227,6 +255,7 @@ class Run:
                 "most_nodes": surface.most_nodes,
                 "finest_spacing": surface.finest_spacing,
                 "growth": surface.growth,
+                "cycles": max(self.cycle, getattr(self.motion, "periods", 1)),
                 "wall_time": seconds,
             },
             warnings=self._warnings(),

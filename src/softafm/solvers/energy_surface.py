@@ -53,6 +53,7 @@ class Surface:
         self.clock = np.zeros(k.CLOCK_SIZE)
         self.clock[k.TIME] = motion.breaks[0]
         self.clock[k.FRAME] = self.open_frame
+        self.background = k.Background(np.empty((0, 0)), 1.0, 1.0, 1.0, 1.0, 0.0)
         work = contact.surface.work_of_adhesion
         self.clock[k.FORCE_SCALE] = 0.2 * np.pi * contact.tip.radius * work
 
@@ -76,18 +77,50 @@ class Surface:
         if coarseness > 0:
             wanted = self.mesh.edge_spacing * self.target / coarseness
             level = ceil(log2(_COARSEST_SPACING / wanted) - 1e-9)
-        old, self.level = self.mesh, min(max(level, 0), self.finest_level)
-        self.mesh = self._mesh(self.level)
-        fields = np.empty((self.fields.shape[0], self.mesh.nodes.size))
-        for before, after in zip(self.fields, fields, strict=True):
-            k.transfer(
-                before, old.nodes.size, old.nodes[-1], old.edge_spacing, old.growth, 1.0,
-                self.mesh.nodes, after,
-            )  # fmt: skip
-        self.fields = fields
+        self._move_to(min(max(level, 0), self.finest_level), 1.0)
         self.meshes += 1
         self.most_nodes = max(self.most_nodes, self.mesh.nodes.size)
         self.finest_spacing = min(self.finest_spacing, self.mesh.edge_spacing)
+
+    def rewind(self, time: float) -> np.ndarray:
+        """Go back to ``time``, always in the same frame; return the memory gained since, Pa·m.
+
+        Shape (modes, n). Whoever goes on has to ``remember`` and to ``settle``.
+        """
+        self._move_to(min(_FIRST_LEVEL, self.finest_level), self.open_frame / self.clock[k.FRAME])
+        self.clock[k.FRAME] = self.open_frame
+        self.clock[k.TIME] = time
+        gained = self.fields[k.MEMORY :].copy()
+        self.fields[k.MEMORY :] = 0
+        return gained
+
+    def remember(self, memory) -> None:
+        """Take ``memory``, as ``rewind`` returned it, for that of all that was before now."""
+        mesh = self.mesh
+        self.background = k.Background(
+            memory, self.open_frame, mesh.nodes[-1], mesh.edge_spacing, mesh.growth, self.time
+        )
+
+    def memory(self) -> np.ndarray:
+        """Return the memory fields now, (modes, n) in Pa·m."""
+        memory = np.zeros((self.parameters.retardation.size, self.mesh.nodes.size))
+        k.recall(
+            self.background, self.time, self.clock[k.FRAME], self.parameters.retardation,
+            self.mesh.nodes, memory,
+        )  # fmt: skip
+        return memory + self.fields[k.MEMORY :]
+
+    def _move_to(self, level: int, stretch: float) -> None:
+        """Carry all fields to the mesh of a level in a frame ``stretch`` times larger."""
+        old, self.level = self.mesh, level
+        self.mesh = self._mesh(level)
+        fields = np.empty((self.fields.shape[0], self.mesh.nodes.size))
+        for before, after in zip(self.fields, fields, strict=True):
+            k.transfer(
+                before, old.nodes.size, old.nodes[-1], old.edge_spacing, old.growth, stretch,
+                self.mesh.nodes, after,
+            )  # fmt: skip
+        self.fields = fields
 
     def settle(self) -> np.ndarray:
         """Equilibrate at frozen memory and return the state as a record."""
@@ -97,7 +130,7 @@ class Surface:
         tip, pressure, scratch = np.empty(n), np.empty(n), np.empty(n)
         profile(frame * mesh.nodes, self.parameters.tip, tip, n)
         base = height(self.time, self.parameters.height)
-        memory = self.fields[k.MEMORY :]
+        memory = self.memory()
         instantaneous, modes = self.parameters.compliance[0], self.parameters.compliance[1:]
         v = -modes @ memory
         unknowns = np.append(self.fields[k.DEFORMATION], clock[k.DEFLECTION])

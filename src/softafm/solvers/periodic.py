@@ -1,0 +1,61 @@
+"""The memory with which a cycle ends as it began.
+
+Over one cycle the memory y_m fades by e^(−T/τ_m) and gains what the cycle loads, Δ_m. If every cycle
+loaded it alike, it would settle at
+
+    Φ_m(y) = Δ_m / (1 − e^(−T/τ_m)).
+
+The periodic memory is the fixed point y = Φ(y): one cycle finds it where the contact hardly feels
+its own memory, however slow the creep, and Anderson's mixing of a few past cycles finds it where it
+does (Walker and Ni 2011, SIAM Journal on Numerical Analysis 49, 1715).
+"""
+
+import numpy as np
+
+_DEPTH = 4
+
+
+class PeriodicMemory:
+    """Seeks the periodic memory from what cycles make of trial ones.
+
+    Parameters
+    ----------
+    period
+        Of the motion, s.
+    compliances, retardation_times
+        J_m, 1/Pa, and τ_m, s, shape (modes,).
+    """
+
+    def __init__(self, period: float, compliances, retardation_times):
+        self._gaining = -np.expm1(-period / np.asarray(retardation_times))[:, None]
+        self._compliances = np.asarray(compliances)[:, None]
+        self._trials: list[np.ndarray] = []
+        self._misses: list[np.ndarray] = []
+
+    def next_start(self, start, gained) -> tuple[np.ndarray, float]:
+        """Return the memory to start the next cycle with, and how far the last start was off, m.
+
+        ``start`` is y_m at the start of a cycle, ``gained`` its Δ_m, shape (modes, nodes), in Pa·m.
+        The distance is that of the displacement Σ J_m y_m, largest over the nodes.
+        """
+        miss = gained / self._gaining - start
+        self._trials.append(start)
+        self._misses.append(miss)
+        del self._trials[: -_DEPTH - 1], self._misses[: -_DEPTH - 1]
+        off = float(np.abs(np.sum(self._compliances * miss, axis=0)).max(initial=0.0))
+        return self._mixed(), off
+
+    def _mixed(self) -> np.ndarray:
+        """Move from where the recent misses, seen as linear, would combine to the least."""
+        trial, miss = self._trials[-1], self._misses[-1]
+        steps = [b - a for a, b in zip(self._trials[:-1], self._trials[1:], strict=True)]
+        changes = [b - a for a, b in zip(self._misses[:-1], self._misses[1:], strict=True)]
+        if not steps:
+            return trial + miss
+        columns = np.stack([(self._compliances * change).ravel() for change in changes], axis=1)
+        wanted = (self._compliances * miss).ravel()
+        shares = np.linalg.lstsq(columns, wanted, rcond=1e-6)[0]
+        mixed = trial + miss
+        for share, step, change in zip(shares, steps, changes, strict=True):
+            mixed = mixed - share * (step + change)
+        return mixed
