@@ -113,6 +113,21 @@ def test_a_result_of_the_papers_solver_is_run_plotted_and_exported(folder, softa
     assert "force (N)" in (folder / "fixed.csv").read_text(encoding="utf-8")
 
 
+def test_spectroscopy_is_run_plotted_and_exported(folder, softafm):
+    assert softafm("example", "ldpe-spectroscopy")[0] == 0
+    run = ("run", "ldpe-spectroscopy.toml", "--tolerance", "0.05")
+    assert softafm(*run, "--out", "stiff.nc")[0] == 0
+    code, out, err = softafm(*run, "--set", "cantilever.stiffness=2 N/m", "--out", "soft.nc")
+    assert (code, err) == (0, "")
+    assert re.search(r"force_max +2\.\d+ nN", out)
+    assert re.search(r"jumps +2\b", out)
+    assert softafm("plot", "stiff.nc", "soft.nc", "--out", "levers.png")[0] == 0
+    assert softafm("export", "soft.nc", "--out", "soft.csv")[0] == 0
+    lines = (folder / "soft.csv").read_text(encoding="utf-8").splitlines()
+    header = next(line for line in lines if not line.startswith("#"))
+    assert {"base_height (m)", "deflection (m)"} < set(header.split(","))
+
+
 def test_plot_draws_one_or_several(folder, softafm):
     softafm("run", "attard-triangle.toml", "--tolerance", "0.05")
     assert softafm("plot", "attard-triangle.nc")[0] == 0
@@ -162,6 +177,21 @@ def test_info_tells_the_cost_of_the_chosen_solver(folder, softafm, settings, cos
 
 
 @pytest.mark.parametrize(
+    ("stiffness", "shown", "words"),
+    [("28.1 N/m", r"28\.1 N/m", "the lever is stiffer"), ("40 pN/nm", "40 mN/m", "snaps in")],
+)
+def test_info_compares_the_lever_with_the_attraction(softafm, folder, stiffness, shown, words):
+    softafm("example", "ldpe-spectroscopy")
+    info = ("info", "ldpe-spectroscopy.toml", "--set", f"cantilever.stiffness={stiffness}")
+    code, out, err = softafm(*info)
+    assert (code, err) == (0, "")
+    assert re.search(rf"lever stiffness +{shown}", out)
+    assert re.search(rf"steepest attraction +8\.211 N/m +undeformed; .*{words}", out)
+    assert re.search(r"contact stiffness +2\.465 N/m", out)
+    assert "lever unbent" in out
+
+
+@pytest.mark.parametrize(
     ("modulus", "regime"), [("100 GPa", "stiff (DMT)"), ("0.1 MPa", "soft (JKR)")]
 )
 def test_info_names_the_regime(softafm, folder, modulus, regime):
@@ -175,7 +205,7 @@ def test_example_lists_and_writes(tmp_path, monkeypatch, softafm):
     monkeypatch.chdir(tmp_path)
     code, out, _ = softafm("example")
     assert code == 0
-    for name in ("attard-triangle", "ldpe-tapping"):
+    for name in ("attard-triangle", "ldpe-spectroscopy", "ldpe-tapping"):
         assert re.search(rf"^{name} +\w.*", out, re.MULTILINE)
     assert names(tmp_path) == []
     assert softafm("example", "ldpe-tapping")[0] == 0

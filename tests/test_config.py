@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 
 import softafm as sa
 from softafm.config import ConfigError, Experiment, example_names, example_text, load_experiment
-from softafm.units import LENGTH, MODULUS, read_quantity, readable
+from softafm.units import FORCE, LENGTH, MODULUS, STIFFNESS, read_quantity, readable
 
 TAP = {
     "mode": "tapping-cycle",
@@ -30,6 +30,8 @@ TAP = {
 }
 TRIANGLE = {"start": "10 nm", "turn": "-10 nm", "speed": "5 um/s"}
 CURVE = {**TAP, "mode": "force-distance", "motion": TRIANGLE}
+LEVER = {"stiffness": "28.1 N/m", "quality_factor": 430, "frequency": "278 kHz"}
+SPECTROSCOPY = {**CURVE, "mode": "force-spectroscopy", "cantilever": LEVER}
 KELVIN_VOIGT = {
     "model": "generalized-kelvin-voigt",
     "E0": "2 GPa",
@@ -132,6 +134,37 @@ def test_triangle_is_the_default_motion_of_a_force_curve(load):
 def test_a_force_curve_may_follow_a_sine(load):
     motion = {"shape": "sine", **TAP["motion"], "cycles": 3}
     assert load({**CURVE, "motion": motion}).motion == sa.Sine(46e-9, 49.6e-9, 278e3, 3)
+
+
+WAVE = {"mean_height": "-10 nm", "amplitude": "50 nm", "frequency": "1 Hz"}
+
+
+def test_a_triangle_may_be_a_wave_and_rest_and_turn_at_a_force(load):
+    wave = load({**CURVE, "motion": WAVE}).motion
+    assert wave == sa.Triangle.from_frequency(-10e-9, 50e-9, 1.0)
+    options = {"dwell": "20 ms", "setpoint_force": "500 pN"}
+    for document in (CURVE, SPECTROSCOPY):
+        motion = load({**document, "motion": {**TRIANGLE, **options}}).motion
+        assert motion == sa.Triangle(10e-9, -10e-9, 5e-6, 0.02, 5e-10)
+    wave = load({**SPECTROSCOPY, "motion": {"shape": "triangle", **WAVE, **options}}).motion
+    assert wave == sa.Triangle.from_frequency(-10e-9, 50e-9, 1.0, dwell=0.02, setpoint_force=5e-10)
+
+
+@pytest.mark.parametrize("stiffness", ["28.1 N/m", "28100 mN/m", "28100 pN/nm", "28.1 nN/nm"])
+def test_a_cantilever(load, stiffness):
+    document = changed(SPECTROSCOPY, "cantilever.stiffness", stiffness)
+    assert load(document).cantilever == sa.Cantilever(28.1, 430.0, 278e3)
+    assert load({**document, "cantilever": {"stiffness": stiffness}}).cantilever == (
+        sa.Cantilever(28.1)
+    )
+    assert load(CURVE).cantilever is None
+
+
+def test_spectroscopy_takes_every_motion_of_the_base(load):
+    sine = {"shape": "sine", **TAP["motion"]}
+    assert load({**SPECTROSCOPY, "motion": sine}).motion == sa.Sine(46e-9, 49.6e-9, 278e3)
+    motion = measured(load, b"time (s),height (nm)\n0,10\n1,-2\n")["motion"]
+    assert load({**SPECTROSCOPY, "motion": motion}).motion == sa.Trajectory([0, 1], [1e-8, -2e-9])
 
 
 @pytest.mark.parametrize(
@@ -277,13 +310,17 @@ def test_running_a_file_is_calling_the_function(load):
     motion = sa.Triangle(10e-9, -10e-9, 5e-6)
     same = sa.force_distance(load(CURVE).contact, motion)
     np.testing.assert_array_equal(curve["force"], same["force"])
+    bent = load(SPECTROSCOPY).run()
+    same = sa.force_spectroscopy(load(CURVE).contact, sa.Cantilever(28.1), motion)
+    assert bent.attrs["mode"] == "force-spectroscopy"
+    np.testing.assert_array_equal(bent["deflection"], same["deflection"])
 
 
 # Bundled examples
 
 
 def test_bundled_examples_load_and_say_what_they_are(load):
-    assert {"attard-triangle", "ldpe-tapping"} <= set(example_names())
+    assert {"attard-triangle", "ldpe-spectroscopy", "ldpe-tapping"} <= set(example_names())
     for name in example_names():
         text = example_text(name)
         assert text.startswith("# ")
@@ -300,6 +337,17 @@ def test_ldpe_example_is_the_reference_case(load):
     result = load(example_text("ldpe-tapping")).run()
     assert float(result["virial"]) == pytest.approx(-3.4805e-17, rel=0.01)
     assert float(result["dissipation"]) == pytest.approx(8.7097e-17, rel=0.01)
+
+
+def test_spectroscopy_example_is_the_papers_wave_and_the_reference_case(load):
+    experiment = load(example_text("ldpe-spectroscopy"))
+    assert experiment.motion.speed == pytest.approx(
+        sa.Triangle.from_frequency(0.0, 50e-9, 1.0).speed
+    )
+    result = experiment.run()
+    assert float(result["force_max"]) == pytest.approx(5.2246e-9, rel=0.01)
+    assert float(result["force_min"]) == pytest.approx(-1.57152e-9, rel=0.01)
+    assert float(result["loop_energy"]) == pytest.approx(1.07619e-18, rel=0.01)
 
 
 def test_unknown_example():
@@ -323,6 +371,10 @@ def test_unknown_example():
         ("1 N/m²", MODULUS, 1.0),
         ("1 N m^-2", MODULUS, 1.0),
         ("3 J/m**3", MODULUS, 3.0),
+        ("40 pN/nm", STIFFNESS, 0.04),
+        ("2.5 mN/m", STIFFNESS, 0.0025),
+        ("5 nN", FORCE, 5e-9),
+        ("120 pN", FORCE, 1.2e-10),
     ],
 )
 def test_quantities(written, kind, value):
@@ -345,6 +397,7 @@ def test_reading_a_length_scales_by_its_prefix(number, unit):
         (0.0, "J", "0 J"),
         (8.7097e-17, "J", "87.1 aJ"),
         (2.78e5, "Hz", "278 kHz"),
+        (0.04, "N/m", "40 mN/m"),
         (0.45, "", "0.45"),
     ],
 )
@@ -448,12 +501,13 @@ def test_missing_and_malformed_tables(load, table):
         ("sample.relaxation_time=1 us", "sample: give creep_time, or relaxation_time; found"),
         ("surface.work_of_adhesion=30 mJ/m^2", "surface: give hamaker, or work_of_adhesion"),
         ("tip.raduis=10 nm", "tip.raduis: unknown key; did you mean 'radius'?"),
-        ("cantilver.k=1", "cantilver: unknown key; must be 'mode'"),
+        ("cantilver.k=1", "cantilver: unknown key; did you mean 'cantilever'?"),
+        ("cantilever.stiffness=1 N/m", "cantilever: of no use with mode = 'tapping-cycle'; leave"),
+        ("cantilever=1", "cantilever: of no use with mode = 'tapping-cycle'; leave it out, or use"),
         ("tip.shape=paraboloyd", "tip.shape = 'paraboloyd': did you mean 'paraboloid'?"),
         ("mode=tapping-cycel", "mode = 'tapping-cycel': did you mean 'tapping-cycle'?"),
         ("mode=approach-curve", "mode = 'approach-curve': is not available in this version"),
-        ("mode=force-spectroscopy", "mode = 'force-spectroscopy': is not available in this ver"),
-        ("mode=[1]", "mode = [1]: must be 'force-distance' or 'tapping-cycle'"),
+        ("mode=[1]", "mode = [1]: must be 'force-distance', 'force-spectroscopy' or 'tapping-cyc"),
         ("motion.cycles=0", "motion.cycles = 0: must be a whole number from 1"),
         ("motion.cycles=1.5", "motion.cycles = 1.5: must be a whole number"),
         ("motion.mean_height=-60 nm", "motion.mean_height = '-60 nm': start height = "),
@@ -554,10 +608,82 @@ def test_fixed_steps_refuse_a_written_tolerance(load, solver):
         ({"speed": "0 um/s"}, "motion.speed = '0 um/s': must be greater than 0"),
         ({"speed": "5 um"}, "motion.speed = '5 um': must be a speed with its unit, such as '5 um"),
         ({"start": "0.1 nm"}, "motion.start = '0.1 nm': start height"),
+        ({"start": None}, "motion: give start, turn and speed, or mean_height, amplitude and freq"),
+        ({"frequency": "1 Hz"}, "motion: give start, turn and speed, or mean_height, amplitude an"),
+        ({"cycles": 2}, "motion.cycles: unknown key; must be 'start', "),
+        ({"dwell": 1}, "motion.dwell = 1: must be a time with its unit, such as '0.1 us'; the uni"),
+        ({"dwell": "1 nm"}, "motion.dwell = '1 nm': must be a time with its unit, such as '0.1 u"),
+        ({"dwell": "-1 ms"}, "motion.dwell = '-1 ms': must be at least 0"),
+        ({"dwell": "inf s"}, "motion.dwell = 'inf s': must be finite"),
+        ({"setpoint_force": "5 nm"}, "motion.setpoint_force = '5 nm': must be a force with its u"),
+        ({"setpoint_force": "0 nN"}, "motion.setpoint_force = '0 nN': must be greater than 0"),
+        ({"setpoint_force": "-5 nN"}, "motion.setpoint_force = '-5 nN': must be greater than 0"),
     ],
 )
 def test_bad_triangles(load, motion, line):
-    assert refusal(load, {**CURVE, "motion": {**TRIANGLE, **motion}}).startswith(line)
+    written = {k: v for k, v in {**TRIANGLE, **motion}.items() if v is not None}
+    for document in (CURVE, SPECTROSCOPY):
+        assert refusal(load, {**document, "motion": written}).startswith(line)
+
+
+@pytest.mark.parametrize(
+    ("motion", "line"),
+    [
+        ({"frequency": "0 Hz"}, "motion.frequency = '0 Hz': must be greater than 0"),
+        ({"amplitude": "-1 nm"}, "motion.amplitude = '-1 nm': must be greater than 0"),
+        ({"amplitude": "1e-30 m"}, "motion: turn = -1e-08 m: must be below start = -1e-08 m"),
+        ({"mean_height": "-60 nm"}, "motion.mean_height = '-60 nm': start height = -1e-08 m: must"),
+    ],
+)
+def test_bad_triangular_waves(load, motion, line):
+    assert refusal(load, {**CURVE, "motion": {**WAVE, **motion}}).startswith(line)
+
+
+@pytest.mark.parametrize(
+    ("override", "line"),
+    [
+        ("cantilever.stiffness=28", "cantilever.stiffness = 28: must be a stiffness with its unit"),
+        ("cantilever.stiffness=28 N", "cantilever.stiffness = '28 N': must be a stiffness with it"),
+        ("cantilever.stiffness=0 N/m", "cantilever.stiffness = '0 N/m': must be greater than 0"),
+        ("cantilever.stiffness=nan N/m", "cantilever.stiffness = 'nan N/m': must be finite"),
+        ("cantilever.quality_factor=0", "cantilever.quality_factor = 0: must be greater than 0"),
+        ("cantilever.quality_factor=inf", "cantilever.quality_factor = inf: must be a finite num"),
+        ("cantilever.quality_factor='9'", "cantilever.quality_factor = '9': must be a plain num"),
+        ("cantilever.frequency=1 s", "cantilever.frequency = '1 s': must be a frequency with its"),
+        ("cantilever.frequency=-1 Hz", "cantilever.frequency = '-1 Hz': must be greater than 0"),
+        ("cantilever.k=1 N/m", "cantilever.k: unknown key; must be 'stiffness', 'quality_factor'"),
+        ("cantilever={}", "cantilever.stiffness: missing; must be a stiffness with its unit, such"),
+        ("cantilever=28", "cantilever = 28: must be a table, [cantilever]"),
+        ("mode=force-distance", "cantilever: of no use with mode = 'force-distance'; leave it out"),
+        ("mode=approach-curve", "mode = 'approach-curve': is not available in this version"),
+        ("solver.name=attard", "solver = 'attard': moves the tip itself, not a cantilever; must b"),
+    ],
+)
+def test_bad_cantilevers(load, override, line):
+    assert refusal(load, SPECTROSCOPY, override).startswith(line)
+
+
+def test_a_missing_cantilever(load):
+    line = refusal(load, changed(SPECTROSCOPY, "cantilever", None))
+    assert line == "cantilever: missing; add a table [cantilever]"
+
+
+@given(st.sampled_from(sorted(LEVER)), anything)
+@few
+def test_garbage_in_cantilevers(load, key, value):
+    document = changed(SPECTROSCOPY, f"cantilever.{key}", value)
+    try:
+        load(document)
+    except ConfigError:
+        assert refusal(load, document).startswith(f"cantilever.{key} = ")
+
+
+def test_fixed_steps_refuse_a_setpoint_of_force(load):
+    line = refusal(load, {**CURVE, "solver": ATTARD}, "motion.setpoint_force=1 nN")
+    assert line == (
+        "motion.setpoint_force = '1 nN': the solver 'attard' must know the motion beforehand; "
+        "leave it out, or use the solver 'energy'"
+    )
 
 
 @pytest.mark.parametrize(

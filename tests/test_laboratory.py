@@ -37,10 +37,20 @@ GOOD = {
         "creep_time": 1e-5,
         "poisson": 0.3,
     },
-    sa.Triangle: {"start": 1e-8, "turn": -1e-9, "speed": 1e-6},
+    sa.Triangle: {
+        "start": 1e-8,
+        "turn": -1e-9,
+        "speed": 1e-6,
+        "dwell": 1e-3,
+        "setpoint_force": 1e-9,
+    },
+    sa.Triangle.from_frequency: {"mean_height": 1e-8, "amplitude": 1e-8, "frequency": 1.0},
+    sa.Cantilever: {"stiffness": 28.1, "quality_factor": 430.0, "frequency": 278e3},
     sa.Sine: {"mean_height": 1e-8, "amplitude": 1e-8, "frequency": 1e5, "cycles": 2},
 }
 SIGNED = {"poisson", "start", "turn", "mean_height"}
+OPTIONAL = {"setpoint_force", "quality_factor"}
+MAY_BE_ZERO = {"dwell"}
 
 
 def relaxed_times(sample, count=9):
@@ -231,10 +241,13 @@ def test_equal_moduli_and_empty_chains_are_elastic(E, nu):
 
 motions = st.one_of(
     st.builds(
-        lambda turn, depth, speed: sa.Triangle(1e-9 * (turn + depth), 1e-9 * turn, 1e-6 * speed),
+        lambda turn, depth, speed, rest: sa.Triangle(
+            *(1e-9 * (turn + depth), 1e-9 * turn, 1e-6 * speed), dwell=rest * 1e-3 * depth / speed
+        ),
         st.floats(-20, 20),
         st.floats(0.1, 50),
         positive,
+        st.one_of(st.just(0.0), st.floats(0.01, 10)),
     ),
     st.builds(
         lambda mean, amplitude, frequency, cycles: sa.Sine(
@@ -321,6 +334,41 @@ def test_triangle_and_sine_pass_their_named_points():
     assert sine.height([0, 0.0025, 0.005, 0.02]) == pytest.approx([14e-9, 10e-9, 6e-9, 14e-9])
 
 
+def test_a_ramp_rests_at_its_lowest_height():
+    ramp = sa.Triangle(start=10e-9, turn=-5e-9, speed=1e-6, dwell=4e-3)
+    assert ramp.breaks == pytest.approx([0, 15e-3, 19e-3, 34e-3])
+    assert ramp.height(ramp.breaks) == pytest.approx([10e-9, -5e-9, -5e-9, 10e-9])
+    assert np.all(ramp.height(np.linspace(15.001e-3, 18.999e-3, 50)) == -5e-9)
+    assert ramp.velocity([1e-3, 17e-3, 30e-3]) == pytest.approx([-1e-6, 0, 1e-6])
+    assert ramp.velocity(ramp.breaks[:-1]) == pytest.approx([-1e-6, 0, 1e-6])
+
+
+def test_a_ramp_turned_on_its_way_keeps_its_start_speed_and_rest():
+    ramp = sa.Triangle(10e-9, -5e-9, 1e-6, dwell=4e-3, setpoint_force=1e-9)
+    turned = ramp.turned_at(12e-3)
+    assert turned == sa.Triangle(10e-9, turned.turn, 1e-6, dwell=4e-3)
+    assert turned.breaks == pytest.approx([0, 12e-3, 16e-3, 28e-3])
+    before = np.linspace(0, 12e-3, 20)
+    assert turned.height(before) == pytest.approx(ramp.height(before))
+
+
+@given(st.floats(-100, 100), positive, positive)
+def test_a_triangular_wave_lasts_a_period(mean, amplitude, frequency):
+    mean, amplitude = 1e-9 * mean, 1e-7 * amplitude
+    wave = sa.Triangle.from_frequency(mean, amplitude, frequency, dwell=0.0)
+    assert wave.breaks[-1] == pytest.approx(1 / frequency, rel=1e-6)
+    assert wave.height(wave.breaks) == pytest.approx(
+        [mean + amplitude, mean - amplitude, mean + amplitude]
+    )
+
+
+def test_a_triangular_wave_takes_the_options_of_a_ramp():
+    wave = sa.Triangle.from_frequency(0.0, 1e-8, 1.0, dwell=0.2, setpoint_force=1e-9)
+    assert (wave.dwell, wave.setpoint_force) == (0.2, 1e-9)
+    assert wave.speed == pytest.approx(4e-8)
+    assert wave.breaks[-1] == pytest.approx(1.2)
+
+
 def test_trajectory_passes_its_samples_and_does_not_overshoot():
     time = np.array([-1.0, 0.0, 0.5, 2.0, 2.1])
     heights = np.array([5.0, 1.0, 1.0, 4.0, 3.9]) * 1e-9
@@ -384,7 +432,8 @@ def assert_one_line_naming(field, message):
 @given(data=st.data())
 @settings(max_examples=25, deadline=None)
 def test_what_is_no_number_is_refused(build, field, data):
-    value = data.draw(not_numbers)
+    optional = field in OPTIONAL or (build, field) == (sa.Cantilever, "frequency")
+    value = data.draw(not_numbers.filter(lambda x: x is not None or not optional))
     message = refusal(build, **{**GOOD[build], field: value})
     assert_one_line_naming(field, message)
 
@@ -393,7 +442,7 @@ def test_what_is_no_number_is_refused(build, field, data):
 @given(data=st.data())
 @settings(max_examples=15, deadline=None)
 def test_what_is_not_positive_is_refused(build, field, data):
-    value = data.draw(not_positive)
+    value = data.draw(not_positive.filter(lambda x: x != 0 or field not in MAY_BE_ZERO))
     message = refusal(build, **{**GOOD[build], field: value})
     assert_one_line_naming(field, message)
 
@@ -520,6 +569,38 @@ def test_scales_of_a_contact():
     soft = sa.Contact(contact.tip, sa.StandardLinearSolid(8e9, 1e9, 1.0, 0.0), contact.surface)
     assert soft.tabor_relaxed == pytest.approx(4 * soft.tabor_instantaneous)
     assert soft.cohesive_length_instantaneous == pytest.approx(8 * soft.cohesive_length)
+
+
+def test_steepest_attraction_is_that_of_the_tip_above_the_flat_surface():
+    contact = lab()
+    R, z0 = 1e-8, 3e-10
+
+    def force(height):
+        pressed = quad(
+            lambda x: x * float(contact.surface.pressure(height + (x * z0) ** 2 / (2 * R))), 0, 200
+        )
+        return 2 * pi * z0**2 * pressed[0]
+
+    heights = z0 * np.linspace(1.05, 1.4, 36)
+    slopes = np.diff([force(height) for height in heights]) / np.diff(heights)
+    assert contact.steepest_attraction == pytest.approx(slopes.max(), rel=2e-3)
+
+
+def test_cantilevers_need_no_resonance_to_bend():
+    lever = sa.Cantilever(2)
+    assert (lever.stiffness, lever.quality_factor, lever.frequency) == (2.0, None, None)
+    for other in (None, 2.0, sa.Triangle(4e-9, 1e-9, 1e-6)):
+        with pytest.raises(ValueError, match=r"^cantilever = .*: must be a softafm.Cantilever"):
+            sa.force_spectroscopy(lab(), other, sa.Triangle(4e-9, 1e-9, 1e-6))
+
+
+@pytest.mark.parametrize("solver", [sa.solvers.Attard(), sa.solvers.EnhancedAttard()])
+def test_fixed_steps_refuse_levers_and_setpoints(solver):
+    ramp, lever = sa.Triangle(4e-9, 1e-9, 1e-6, setpoint_force=1e-9), sa.Cantilever(2.0)
+    with pytest.raises(ValueError, match=rf"^solver = '{solver.kind}': moves the tip itself"):
+        sa.force_spectroscopy(lab(), lever, ramp, solver=solver)
+    with pytest.raises(ValueError, match=r"^setpoint_force = 1e-09 N: the solver"):
+        sa.force_distance(lab(), ramp, solver=solver)
 
 
 def test_expected_contact_radius_is_that_of_jkr():

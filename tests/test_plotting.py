@@ -47,6 +47,16 @@ def triangle(speed=5e-6, strength=1e-6, jump_time=()):
     return result("force-distance", time, height, force, jump_time)
 
 
+def spectroscopy(stiffness=4.0, jump_time=()):
+    """A lever on a made-up repulsion; where it is softer than that, its tip rises on approach."""
+    time = triangle().time.values
+    base = triangle().tip_height.values
+    force = 5e-9 * np.tanh(base / -2e-9)
+    deflection = force / stiffness
+    run = result("force-spectroscopy", time, base + deflection, force, jump_time)
+    return run.assign(base_height=("time", base), deflection=("time", deflection))
+
+
 def tap(cycles=1, strength=4e-9, jump_time=()):
     time = np.linspace(0, cycles * 3.6e-6, 400 * cycles + 1)
     height = 46e-9 + 49.6e-9 * np.cos(2 * np.pi * time / 3.6e-6)
@@ -123,6 +133,46 @@ def test_elastic_jumps_are_marked_on_the_curve():
     assert "elastic jump" in legend_texts(ax.get_legend())
 
 
+def test_spectroscopy_is_drawn_as_deflection_and_force_against_base_and_tip():
+    dataset = spectroscopy(jump_time=[6.0e-3])
+    figure = plot(dataset)
+    axes = figure.axes
+    assert [ax.get_xlabel() for ax in axes] == [
+        "Time (ms)",
+        "Base height (nm)",
+        "Tip height (nm)",
+    ]
+    assert [ax.get_ylabel() for ax in axes] == ["Deflection (nm)", "Force on the tip (nN)", ""]
+    drawn = ("time", "deflection"), ("base_height", "force"), ("tip_height", "force")
+    at_jump = dataset.interp(time=6.0e-3)
+    for ax, names in zip(axes, drawn, strict=True):
+        scales = [1e3 if name == "time" else 1e9 for name in names]
+        for get, name, scale in zip(("get_xdata", "get_ydata"), names, scales, strict=True):
+            parts = [getattr(line, get)() for line in curves(ax)]
+            whole = np.concatenate([parts[0][:-1], parts[1]])
+            assert whole == pytest.approx(scale * dataset[name].values)
+            (marker,) = [line for line in ax.lines if line.get_marker() == "o"]
+            assert getattr(marker, get)() == pytest.approx([scale * float(at_jump[name])])
+    assert legend_texts(figure.legends[0]) == ["approach", "retract", "elastic jump"]
+    assert axes[1].get_xlim() == axes[2].get_xlim()
+    assert axes[1].get_ylim() == axes[2].get_ylim()
+
+
+def test_strokes_of_spectroscopy_are_those_of_the_base():
+    soft = spectroscopy(stiffness=1.0)
+    assert np.any(np.diff(soft.tip_height[:100]) > 0)
+    for ax in plot(soft).axes:
+        assert [line.get_linestyle() for line in curves(ax)] == ["-", "--"]
+
+
+def test_levers_overlaid_have_a_colour_each():
+    figure = plot([spectroscopy(1.0), spectroscopy(4.0)], ["soft", "stiff"])
+    assert legend_texts(figure.legends[0]) == ["soft", "stiff", "approach", "retract"]
+    for ax in figure.axes:
+        colours = [to_hex(line.get_color()) for line in curves(ax)]
+        assert (len(colours), len(set(colours))) == (4, 2)
+
+
 def test_tapping_cycle_is_drawn_against_time_and_height_where_the_force_acts():
     dataset = tap()
     against_time, against_height = plot(dataset).axes
@@ -171,7 +221,14 @@ def test_a_run_without_any_force_is_drawn():
     figure.savefig(io.BytesIO(), format="png")
 
 
-@pytest.mark.parametrize("datasets", [[triangle(jump_time=[6e-3])] * 3, [tap(2, jump_time=[2e-6])]])
+@pytest.mark.parametrize(
+    "datasets",
+    [
+        [triangle(jump_time=[6e-3])] * 3,
+        [tap(2, jump_time=[2e-6])],
+        [spectroscopy(jump_time=[6e-3])] * 2,
+    ],
+)
 @pytest.mark.parametrize("suffix", ["png", "svg", "pdf"])
 def test_figures_are_saved_without_pyplot_or_change_of_settings(datasets, suffix):
     before = settings()
@@ -197,5 +254,5 @@ def test_a_wrong_number_of_labels_is_refused():
     "datasets", [[triangle(), tap()], triangle().assign_attrs(mode="seismometer"), xr.Dataset()]
 )
 def test_modes_that_differ_or_have_no_figure_are_refused(datasets):
-    with pytest.raises(ValueError, match="must be force-distance or tapping-cycle"):
+    with pytest.raises(ValueError, match="must be force-distance, force-spectroscopy or tapping"):
         plot(datasets)

@@ -25,6 +25,14 @@ def ramp(**options):
     return sa.force_distance(CONTACT, RAMP, solver=SOLVER, tolerance=2e-2, **options)
 
 
+LEVER = sa.Cantilever(5.0, quality_factor=100, frequency=5e4)
+
+
+def spectroscopy(**options):
+    motion = sa.Triangle(4e-9, -2e-9, 1e-3, dwell=1e-6, setpoint_force=2e-9)
+    return sa.force_spectroscopy(CONTACT, LEVER, motion, tolerance=2e-2, **options)
+
+
 def tap(**options):
     return sa.tapping_cycle(CONTACT, 10e-9, 10.5e-9, 278e3, 2, tolerance=2e-2, **options)
 
@@ -50,10 +58,11 @@ def results():
         "tap, profiles": tap(profiles=True),
         "sampled": sampled(),
         "stepped": stepped(),
+        "spectroscopy": spectroscopy(),
     }
 
 
-ALL = ["ramp", "ramp, profiles", "tap", "tap, profiles", "sampled", "stepped"]
+ALL = ["ramp", "ramp, profiles", "tap", "tap, profiles", "sampled", "stepped", "spectroscopy"]
 
 
 @pytest.fixture
@@ -86,7 +95,8 @@ def test_what_the_modes_promise(results):
     of_ramp = {"force_max", "force_min", "force_min_approach", "loop_energy", "viscous_loss"}
     of_tap = {"virial", "dissipation", "force_max", "force_min", "force_min_approach"}
     of_tap |= {"contact_time", "indentation"}
-    for name, scalars in (("ramp", of_ramp), ("tap", of_tap), ("sampled", of_ramp)):
+    of_mode = {"ramp": of_ramp, "tap": of_tap, "sampled": of_ramp, "spectroscopy": of_ramp}
+    for name, scalars in of_mode.items():
         found = results[name]
         assert all(found[c].dims == ("time",) for c in curves)
         assert all(found[s].dims == () for s in scalars)
@@ -94,6 +104,9 @@ def test_what_the_modes_promise(results):
         assert np.all(np.diff(found["time"]) > 0)
         assert "r" not in found.variables
     assert results["tap"]["cycle_virial"].dims == ("cycle",)
+    bent = results["spectroscopy"]
+    assert bent["base_height"].dims == bent["deflection"].dims == ("time",)
+    assert (bent["base_height"] + bent["deflection"]).values == pytest.approx(bent["tip_height"])
     shapes = results["ramp, profiles"]
     for field in ("deformation", "gap", "pressure"):
         assert shapes[field].dims == ("time", "r")
@@ -103,6 +116,7 @@ def test_what_the_modes_promise(results):
 KINDS = {
     kind.kind: kind
     for kind in (
+        sa.Cantilever,
         sa.Paraboloid,
         sa.StandardLinearSolid,
         sa.Elastic,
@@ -168,6 +182,17 @@ def test_a_replayed_result_is_the_same(results):
             tolerance=found.attrs.get("tolerance", 1e-2),
         )
         xr.testing.assert_equal(again, found)
+
+
+def test_a_replayed_spectroscopy_is_the_same(results):
+    found = results["spectroscopy"]
+    experiment = json.loads(found.attrs["experiment"])
+    lever, motion = (rebuilt(experiment[k]) for k in ("cantilever", "motion"))
+    assert lever == LEVER
+    assert (motion.dwell, motion.setpoint_force) == (1e-6, 2e-9)
+    contact = sa.Contact(*(rebuilt(experiment[k]) for k in ("tip", "sample", "surface")))
+    again = sa.force_spectroscopy(contact, lever, motion, tolerance=found.attrs["tolerance"])
+    xr.testing.assert_equal(again, found)
 
 
 @pytest.mark.parametrize(
@@ -355,7 +380,7 @@ def test_netcdf_of_others_is_no_result(tmp_path, attributes):
 # Export
 
 
-@pytest.mark.parametrize("name", ["ramp", "tap", "tap, profiles"])
+@pytest.mark.parametrize("name", ["ramp", "tap", "tap, profiles", "spectroscopy"])
 def test_csv_holds_the_curves(results, tmp_path, name):
     result, path = results[name], tmp_path / "curve.CSV"
     sa.export(result, path)
@@ -363,6 +388,7 @@ def test_csv_holds_the_curves(results, tmp_path, name):
     comments = [line for line in lines if line.startswith("#")]
     header, *rows = csv.reader(line for line in lines if not line.startswith("#"))
     curves = ["tip_height", "force", "contact_radius", "axis_deformation", "viscous_power"]
+    curves += ["base_height", "deflection"] if name == "spectroscopy" else []
     assert header[0] == "time (s)"
     assert sorted(header[1:]) == sorted(f"{c} ({result[c].units})" for c in curves)
     table = np.array(rows, float)

@@ -3,6 +3,7 @@
 __version__ = "0.1.0"
 
 from softafm import solvers
+from softafm.animation import animate
 from softafm.cantilever import Cantilever
 from softafm.contact import Contact
 from softafm.errors import AccuracyWarning, DivergedError
@@ -12,6 +13,7 @@ from softafm.modes.tapping import tapping_cycle
 from softafm.motions import Sine, Trajectory, Triangle
 from softafm.results import export, load, save
 from softafm.rheology import Elastic, GeneralizedKelvinVoigt, StandardLinearSolid
+from softafm.storyboard import plot_profiles
 from softafm.surfaces import LennardJones
 from softafm.tips import Paraboloid
 
@@ -28,10 +30,12 @@ __all__ = [
     "StandardLinearSolid",
     "Trajectory",
     "Triangle",
+    "animate",
     "export",
     "force_distance",
     "force_spectroscopy",
     "load",
+    "plot_profiles",
     "save",
     "solvers",
     "tapping_cycle",

@@ -1,4 +1,4 @@
-"""The command line: ``softafm run``, ``example``, ``plot``, ``info`` and ``export``.
+"""The command line: ``softafm run``, ``example``, ``plot``, ``animate``, ``info`` and ``export``.
 
 Everything heavy is imported inside the commands, so that ``softafm --help`` answers at once.
 """
@@ -12,6 +12,7 @@ import threading
 import warnings
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -152,21 +153,72 @@ def plot(
         list[Path], typer.Argument(help="What runs wrote; several share axes.", metavar="RESULT.nc")
     ],
     out: Annotated[Path | None, typer.Option(help="Figure; default RESULT.png here.")] = None,
+    profiles: Annotated[
+        bool, typer.Option("--profiles", help="Tip and surface at twelve instants instead.")
+    ] = False,
     force: Force = False,
 ) -> None:
     """Draw one result, or several of the same mode in one figure."""
     with _bad_input():
-        out = _output(out, f"{results[0].stem}.png", _PICTURES, force)
+        if profiles and len(results) > 1:
+            raise ValueError(f"{len(results)} results with --profiles: must be one")
+        kind = "-profiles" if profiles else ""
+        out = _output(out, f"{results[0].stem}{kind}.png", _PICTURES, force)
 
         from softafm.plotting import plot as draw
         from softafm.results import load
+        from softafm.storyboard import plot_profiles
 
         datasets = [load(path) for path in results]
-        figure = draw(datasets, labels=[path.stem for path in results])
+        if profiles:
+            figure = plot_profiles(datasets[0])
+        else:
+            figure = draw(datasets, labels=[path.stem for path in results])
     picture = io.BytesIO()
     figure.savefig(picture, format=out.suffix[1:].lower(), dpi=150)
     _write(out, picture.getvalue())
     typer.echo(f"saved {out}")
+
+
+@app.command()
+def animate(
+    result: Result,
+    out: Annotated[Path, typer.Option(help="Movie: .mp4, .gif or .html.", metavar="MOVIE.html")],
+    frames: Annotated[int, typer.Option(help="Number of frames.")] = 150,
+    seconds: Annotated[float, typer.Option(help="Duration of the movie.")] = 6.0,
+    start: Annotated[
+        str | None, typer.Option(help="Time of the run to begin at, e.g. 1.5us.", metavar="TIME")
+    ] = None,
+    stop: Annotated[str | None, typer.Option(help="Time to end at.", metavar="TIME")] = None,
+    force: Force = False,
+) -> None:
+    """Write a movie of tip and surface; needs a result run with --profiles."""
+    with _bad_input():
+        from softafm import animation, results
+
+        out = _output(out, "", animation.SUFFIXES, force)
+        write = partial(
+            animation.animate,
+            frames=frames,
+            seconds=seconds,
+            start=_time("start", start),
+            stop=_time("stop", stop),
+            progress=sys.stderr.isatty(),
+        )
+        try:
+            _save(write, results.load(result), out, force)
+        except RuntimeError as error:
+            raise _Failure(str(error)) from error
+    typer.echo(f"saved {out}")
+
+
+def _time(option: str, written: str | None) -> float | None:
+    from softafm.units import TIME, read_quantity
+
+    try:
+        return None if written is None else read_quantity(written, TIME)
+    except ValueError as error:
+        raise ValueError(f"--{option} = {written!r}: {error}") from None
 
 
 @app.command()

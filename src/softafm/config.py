@@ -10,7 +10,6 @@ from typing import TYPE_CHECKING, Any
 from pydantic import ValidationError
 
 from softafm import schema
-from softafm.cantilever import Cantilever
 from softafm.contact import Contact
 from softafm.modes.start import refuse_start_inside, refuse_unable
 from softafm.refusals import ConfigError, as_written, nearest, one_of, problem, shown, unknown
@@ -46,7 +45,7 @@ class Experiment:
     mode: str
     contact: Contact
     motion: Any
-    cantilever: Cantilever | None = None
+    cantilever: Any = None
     solver: Any = None
     tolerance: float = 1e-2
     profiles: bool = False
@@ -71,10 +70,8 @@ class Experiment:
         try:
             if self.mode == "force-distance":
                 return sa.force_distance(self.contact, self.motion, **options)
-            if self.cantilever is not None:
-                return sa.force_spectroscopy(
-                    self.contact, self.cantilever, self.motion, **options
-                )
+            if self.mode == "force-spectroscopy":
+                return sa.force_spectroscopy(self.contact, self.cantilever, self.motion, **options)
             motion = self.motion
             return sa.tapping_cycle(
                 self.contact,

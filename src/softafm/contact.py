@@ -129,6 +129,15 @@ class Contact:
         """Width ℓ = E z0²/W of the tension zone at the short-term modulus, m."""
         return self._cohesive_length(self._modulus_instantaneous)
 
+    @property
+    def steepest_attraction(self) -> float:
+        """Largest slope of the attraction on the flat surface, 2πR·max(−p), N/m.
+
+        By Derjaguin F = 2πRΦ(h0), so dF/dh0 = −2πRp(h0). A lever softer than this snaps in.
+        """
+        tension = -float(self.surface.pressure(self.surface.gap_of_largest_tension))
+        return 2 * pi * self.tip.radius * tension
+
     def contact_radius(self, tip_height: float) -> float:
         """Radius of the relaxed contact expected at a tip height (m, negative = indented), m.
 

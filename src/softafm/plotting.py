@@ -18,6 +18,13 @@ COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#0
 APPROACH: Final = "-"
 RETRACT: Final = (0, (4, 1.5))
 PREFIXES = EngFormatter.ENG_PREFIXES
+AXES = {
+    "time": ("Time", "s"),
+    "tip_height": ("Tip height", "m"),
+    "base_height": ("Base height", "m"),
+    "deflection": ("Deflection", "m"),
+    "force": ("Force on the tip", "N"),
+}
 JUMP: dict[str, Any] = {
     "linestyle": "none",
     "marker": "o",
@@ -41,8 +48,8 @@ def plot(
     Returns
     -------
     matplotlib.figure.Figure
-        Force-distance curves, or force of a tap against time and tip height; save it with
-        ``figure.savefig``.
+        Force-distance curves; deflection and force in spectroscopy against time, base and tip
+        height; force of a tap against time and tip height. Save it with ``figure.savefig``.
 
     Raises
     ------
@@ -57,34 +64,56 @@ def plot(
     if len(names) != len(runs):
         raise ValueError(f"labels has {len(names)} entries: must have one a dataset, {len(runs)}")
     modes = sorted({str(run.attrs.get("mode")) for run in runs})
-    if modes == ["force-distance"]:
-        return _force_distance(runs, names)
-    if modes == ["tapping-cycle"]:
-        return _tapping_cycle(runs, names)
+    figures = {
+        "force-distance": _force_distance,
+        "force-spectroscopy": _force_spectroscopy,
+        "tapping-cycle": _tapping_cycle,
+    }
+    if len(modes) == 1 and modes[0] in figures:
+        return figures[modes[0]](runs, names)
+    *others, last = figures
     raise ValueError(
-        f"mode = {', '.join(modes)}: must be force-distance or tapping-cycle, the same for all"
+        f"mode = {', '.join(modes)}: must be {', '.join(others)} or {last}, the same for all"
     )
 
 
 def _force_distance(runs: list[xr.Dataset], names: list[str]) -> Figure:
     figure = Figure(figsize=(6.4, 4.4), dpi=150, layout="constrained")
     ax = figure.add_subplot()
-    _draw(ax, runs, "tip_height", "Tip height", "m")
+    _draw(ax, runs, "tip_height")
     ax.legend(handles=_run_entries(names) + _stroke_entries(runs), frameon=False)
+    return figure
+
+
+def _force_spectroscopy(runs: list[xr.Dataset], names: list[str]) -> Figure:
+    figure = Figure(figsize=(12.0, 4.2), dpi=150, layout="constrained")
+    against_time, against_base, against_tip = figure.subplots(1, 3)
+    against_tip.sharey(against_base)
+    against_tip.sharex(against_base)
+    _draw(against_time, runs, "time", "deflection")
+    _draw(against_base, runs, "base_height")
+    _draw(against_tip, runs, "tip_height")
+    against_tip.set_ylabel("")
+    against_tip.tick_params(labelleft=False)
+    _crop(against_time, runs, "time")
+    _crop(against_base, runs, "base_height", "tip_height")
+    against_time.set_title(_duration(runs), size=10)
+    entries = _run_entries(names) + _stroke_entries(runs)
+    columns = min(len(entries), 6)
+    figure.legend(handles=entries, loc="outside lower center", ncols=columns, frameon=False)
     return figure
 
 
 def _tapping_cycle(runs: list[xr.Dataset], names: list[str]) -> Figure:
     figure = Figure(figsize=(9.6, 4.2), dpi=150, layout="constrained")
     against_time, against_height = figure.subplots(1, 2, sharey=True)
-    _draw(against_time, runs, "time", "Time", "s")
-    _draw(against_height, runs, "tip_height", "Tip height", "m")
+    _draw(against_time, runs, "time")
+    _draw(against_height, runs, "tip_height")
     against_height.set_ylabel("")
-    for ax, variable in ((against_time, "time"), (against_height, "tip_height")):
-        ax.set_xlim(*(_scale(runs, variable) * limit for limit in _interaction(runs, variable)))
+    _crop(against_time, runs, "time")
+    _crop(against_height, runs, "tip_height")
 
-    duration = max(float(np.ptp(run["time"].values)) for run in runs)
-    against_time.set_title(f"Interaction only; the run lasts {_quantity(duration, 's')}", size=10)
+    against_time.set_title(_duration(runs), size=10)
     against_time.legend(handles=_stroke_entries(runs), frameon=False)
     if len(runs) == 1:
         against_height.set_title(_summary(runs[0]), size=10)
@@ -94,19 +123,19 @@ def _tapping_cycle(runs: list[xr.Dataset], names: list[str]) -> Figure:
     return figure
 
 
-def _draw(ax: Axes, runs: list[xr.Dataset], abscissa: str, title: str, unit: str) -> None:
-    """Draw force against a variable in the prefixes that suit the data, and label the axes."""
-    x_scale, y_scale = _scale(runs, abscissa), _scale(runs, "force")
+def _draw(ax: Axes, runs: list[xr.Dataset], abscissa: str, ordinate: str = "force") -> None:
+    """Draw two variables in the prefixes that suit the data, and label the axes."""
+    x_scale, y_scale = _scale(runs, abscissa), _scale(runs, ordinate)
     ax.axhline(0, color="0.75", linewidth=0.8, zorder=0)
-    if abscissa == "tip_height":
+    if abscissa != "time":
         ax.axvline(0, color="0.75", linewidth=0.8, zorder=0)
     for index, run in enumerate(runs):
-        x, force = x_scale * run[abscissa].values, y_scale * run["force"].values
+        x, y = x_scale * run[abscissa].values, y_scale * run[ordinate].values
         approach_colour, retract_colour = _colours(index, len(runs))
-        for stroke, falling in _strokes(run["tip_height"].values):
+        for stroke, falling in _strokes(run[_moved(run)].values):
             ax.plot(
                 x[stroke],
-                force[stroke],
+                y[stroke],
                 color=approach_colour if falling else retract_colour,
                 linestyle=APPROACH if falling else RETRACT,
                 linewidth=1.5,
@@ -114,16 +143,21 @@ def _draw(ax: Axes, runs: list[xr.Dataset], abscissa: str, title: str, unit: str
         jumps = run["jump_time"].values
         ax.plot(
             np.interp(jumps, run["time"].values, x),
-            np.interp(jumps, run["time"].values, force),
+            np.interp(jumps, run["time"].values, y),
             color=approach_colour if len(runs) > 1 else "black",
             zorder=3,
             **JUMP,
         )
-    ax.set_xlabel(f"{title} ({_prefixed(unit, x_scale)})", fontsize=11)
-    ax.set_ylabel(f"Force on the tip ({_prefixed('N', y_scale)})", fontsize=11)
+    ax.set_xlabel(_label(abscissa, x_scale), fontsize=11)
+    ax.set_ylabel(_label(ordinate, y_scale), fontsize=11)
     for axis in (ax.xaxis, ax.yaxis):
         axis.set_major_locator(MaxNLocator("auto", steps=[1, 2, 5, 10]))
     ax.tick_params(direction="in", top=True, right=True)
+
+
+def _moved(run: xr.Dataset) -> str:
+    """What follows the motion: the base of a lever, or else the tip."""
+    return "base_height" if "base_height" in run else "tip_height"
 
 
 def _run_entries(names: list[str]) -> list[Line2D]:
@@ -185,15 +219,22 @@ def _strokes(height: np.ndarray) -> Iterator[tuple[slice, bool]]:
     yield slice(start, height.size), falling
 
 
-def _interaction(runs: list[xr.Dataset], variable: str) -> tuple[float, float]:
-    """Range of a variable where the force exceeds a hundredth of its largest, with a margin."""
+def _crop(ax: Axes, runs: list[xr.Dataset], *variables: str) -> None:
+    """Show, with a margin, only where the force exceeds a hundredth of its largest."""
     felt = []
     for run in runs:
         strength = np.abs(run["force"].values)
-        felt.append(run[variable].values[strength >= 0.01 * strength.max()])
+        where = strength >= 0.01 * strength.max()
+        felt += [run[variable].values[where] for variable in variables]
     low, high = float(np.min(np.concatenate(felt))), float(np.max(np.concatenate(felt)))
     margin = 0.1 * (high - low) or 0.1 * (abs(high) or 1.0)
-    return low - margin, high + margin
+    scale = _scale(runs, variables[0])
+    ax.set_xlim(scale * (low - margin), scale * (high + margin))
+
+
+def _duration(runs: list[xr.Dataset]) -> str:
+    duration = max(float(np.ptp(run["time"].values)) for run in runs)
+    return f"Interaction only; the run lasts {_quantity(duration, 's')}"
 
 
 def _scale(runs: list[xr.Dataset], variable: str) -> float:
@@ -206,8 +247,9 @@ def _factor(largest: float) -> float:
     return 10.0 ** -min(max(exponent, min(PREFIXES)), max(PREFIXES))
 
 
-def _prefixed(unit: str, factor: float) -> str:
-    return PREFIXES[-round(log10(factor))] + unit
+def _label(variable: str, factor: float) -> str:
+    title, unit = AXES[variable]
+    return f"{title} ({PREFIXES[-round(log10(factor))]}{unit})"
 
 
 def _quantity(value: float, unit: str) -> str:

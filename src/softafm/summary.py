@@ -44,9 +44,13 @@ def regime(experiment: "Experiment") -> Table:
         table.add_row(f"cohesive length, {when}", readable(length, "m"), "tension zone at the edge")
     work = readable(contact.surface.work_of_adhesion, "J/m²")
     table.add_row("work of adhesion", work, "per area, to part the surfaces")
-    table.add_row("lowest tip height", readable(lowest, "m"), "above the undeformed surface")
+    carried = experiment.cantilever is not None
+    where = "above the undeformed surface" + (", lever unbent" if carried else "")
+    table.add_row("lowest tip height", readable(lowest, "m"), where)
     jkr = "JKR, slow, at the lowest height" if radius else "none is expected to last"
     table.add_row("contact radius", readable(radius, "m"), jkr)
+    if carried:
+        _add_lever(table, experiment, radius)
     table.add_row("time of the motion", readable(last - first, "s"), "")
     for creep_time in map(float, contact.sample.reduced_compliance.retardation_times):
         words = _creep_in_words(creep_time / (last - first))
@@ -60,6 +64,20 @@ def regime(experiment: "Experiment") -> Table:
     cost = _cost_in_words(solver.expected_seconds(contact, motion))
     table.add_row("expected cost", cost, reason)
     return table
+
+
+def _add_lever(table: Table, experiment: "Experiment", radius: float) -> None:
+    """Compare the lever with what pulls it in and with what it presses on."""
+    contact, lever = experiment.contact, experiment.cantilever.stiffness
+    table.add_row("lever stiffness", readable(lever, "N/m"), "")
+    attraction = contact.steepest_attraction
+    words = "softer, the lever snaps in" if lever < attraction else "the lever is stiffer"
+    table.add_row("steepest attraction", readable(attraction, "N/m"), f"undeformed; {words}")
+    if radius:
+        stiffness = 2 * radius / contact.sample.reduced_compliance.relaxed
+        share = stiffness / (stiffness + lever)
+        words = f"2·E·a, slow; lever bends by {share:.0%} of the way"
+        table.add_row("contact stiffness", readable(stiffness, "N/m"), words)
 
 
 def _table(title: str) -> Table:

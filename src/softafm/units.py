@@ -106,3 +106,10 @@ def readable(value: float, unit: str) -> str:
     exponent = 3 * floor(log10(abs(rounded)) / 3 + 1e-12)
     exponent = min(max(exponent, min(_PREFIXES)), max(_PREFIXES))
     return f"{rounded / 10.0**exponent:.4g} {_PREFIXES[exponent]}{unit}"
+
+
+def prefixed(largest: float, unit: str) -> tuple[float, str]:
+    """Return the factor from SI to the prefix that suits a magnitude, and the prefixed unit."""
+    exponent = 3 * floor(log10(largest) / 3 + 1e-12) if largest > 0 else 0
+    exponent = min(max(exponent, min(_PREFIXES)), max(_PREFIXES))
+    return 10.0**-exponent, f"{_PREFIXES[exponent]}{unit}"

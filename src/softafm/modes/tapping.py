@@ -47,11 +47,10 @@ def tapping_cycle(
     -------
     xarray.Dataset
         The curves of ``force_distance`` over all cycles, or the steady one; ``cycles_run`` says how
-        many it took. Scalars of the last cycle: ``virial``
-        (mean of F·(h0 − mean height); Rajabifar et al. 2021, equation 30), ``dissipation``
-        (−∮F dh0, equation 29), ``force_max``, ``force_min``, ``force_min_approach``,
-        ``contact_time``, ``indentation``; ``cycle_virial`` and ``cycle_dissipation`` of every
-        cycle. All SI.
+        many it took. Scalars of the last cycle: ``virial`` (mean of F·(h0 − mean height); Rajabifar
+        et al. 2021, equation 30), ``dissipation`` (−∮F dh0, equation 29), ``force_max``,
+        ``force_min``, ``force_min_approach``, ``force_mean``, ``contact_time``, ``indentation``;
+        ``cycle_virial`` and ``cycle_dissipation`` of every cycle. All SI.
 
     Raises
     ------
@@ -62,7 +61,12 @@ def tapping_cycle(
     """
     motion = Sine(mean_height, amplitude, frequency, cycles)
     solver, tolerance, history = carry(contact, motion, solver, tolerance, profiles, progress)
+    observables = tap_observables(contact, motion, history)
+    return dataset("tapping-cycle", contact, motion, solver, tolerance, history, observables)
 
+
+def tap_observables(contact, motion, history) -> dict[str, tuple]:
+    """Return the scalars of ``tapping_cycle``, each with its dimensions."""
     period = 1 / motion.frequency
     tops = period * np.arange(motion.periods + 1)
 
@@ -75,7 +79,7 @@ def tapping_cycle(
     last = history.time >= start
     force = history.force
     axis_gap = history.tip_height - history.axis_deformation
-    observables = {
+    return {
         "virial": ((), virial[-1]),
         "dissipation": ((), dissipation[-1]),
         "cycles_run": ((), history.diagnostics.get("cycles", motion.periods)),
@@ -84,6 +88,7 @@ def tapping_cycle(
         "force_max": ((), history.extreme(force, 1, start)),
         "force_min": ((), history.extreme(force, -1, start)),
         "force_min_approach": ((), history.extreme(force, -1, start, start + period / 2)),
+        "force_mean": ((), history.integrate(force, np.ones_like, start) / period),
         "contact_time": (
             (),
             time_below(history.time[last], axis_gap[last], contact.surface.gap_of_largest_tension),
@@ -91,7 +96,6 @@ def tapping_cycle(
         "indentation": ((), max(0.0, -history.axis_deformation[last].min())),
         "viscous_loss": ((), history.integrate(history.viscous_power, np.ones_like, start)),
     }
-    return dataset("tapping-cycle", contact, motion, solver, tolerance, history, observables)
 
 
 def time_below(time, values, level) -> float:

@@ -1,0 +1,80 @@
+"""A cantilever driven near its resonance, its tip in contact once a cycle.
+
+With q = A cos(ωt − φ), the drive F0 cos ωt, and virial V and dissipation E of the tip's force, both
+components of the drive balance:
+
+    F0 cos φ = k A (1 − r²) − 2V/A,      F0 sin φ = k A r/Q + E/(πA),      r = ω/ω0.
+
+At resonance, r = 1 and F0 = k A0/Q, these are equations (29) and (30) of Rajabifar et al. 2021
+(Cleveland et al. 1998; San Paulo and García 2001). Their sum of squares says which amplitudes and
+heights go together; the slow drift of amplitude and phase away from them says which are stable.
+"""
+
+from dataclasses import dataclass
+from math import hypot, pi
+
+import numpy as np
+
+
+@dataclass(frozen=True)
+class Drive:
+    """A drive of constant force, given by the free amplitude that it causes.
+
+    Parameters
+    ----------
+    stiffness, quality_factor
+        k, N/m, and Q of the cantilever.
+    detuning
+        Drive over resonance frequency, r.
+    free_amplitude
+        Amplitude away from the sample, m.
+    """
+
+    stiffness: float
+    quality_factor: float
+    detuning: float
+    free_amplitude: float
+
+    @property
+    def _against(self) -> tuple[float, float]:
+        """What the free lever sets against the drive per amplitude, in phase and behind, N/m."""
+        r = self.detuning
+        return self.stiffness * (1 - r * r), self.stiffness * r / self.quality_factor
+
+    @property
+    def force(self) -> float:
+        """Amplitude F0 of the drive, N."""
+        return self.free_amplitude * hypot(*self._against)
+
+    def components(self, amplitude, virial, dissipation):
+        """F0 cos φ and F0 sin φ that hold an amplitude (m) under V and E (J), in N."""
+        elastic, viscous = self._against
+        in_phase = elastic * amplitude - 2 * virial / amplitude
+        return in_phase, viscous * amplitude + dissipation / (pi * amplitude)
+
+    def excess(self, amplitude, virial, dissipation):
+        """Force needed to hold an amplitude over that of the drive, less 1: 0 on a solution."""
+        return np.hypot(*self.components(amplitude, virial, dissipation)) / self.force - 1
+
+    def phase(self, amplitude, virial, dissipation):
+        """Lag φ of the deflection behind the drive, degrees."""
+        in_phase, behind = self.components(amplitude, virial, dissipation)
+        return np.degrees(np.arctan2(behind, in_phase))
+
+    def stable(self, amplitude, virial, dissipation, virial_slope, dissipation_slope):
+        """Whether a solution attracts, from dV/dA and dE/dA at fixed height of the lever, J/m.
+
+        Averaged over a cycle, up to the factor 1/2mω,
+
+            dA/dt  ~ F0 sin φ − k A r/Q − E/(πA),
+            dφ/dt  ~ (F0 cos φ − k A (1 − r²) + 2V/A)/A,
+
+        whose Jacobian must have a negative trace and a positive determinant.
+        """
+        in_phase, behind = self.components(amplitude, virial, dissipation)
+        elastic, viscous = self._against
+        a = -viscous - (dissipation_slope - dissipation / amplitude) / (pi * amplitude)
+        c = -in_phase / amplitude**2
+        c = c + 2 * (virial_slope - 2 * virial / amplitude) / amplitude**2
+        d = -behind / amplitude
+        return (a + d < 0) & (a * d - in_phase * c > 0)
