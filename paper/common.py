@@ -160,7 +160,8 @@ def tracked(jobs: Iterable, progress: Callable | None, message: Callable) -> Ite
 def run(*scripts: Callable) -> None:
     """Run the ``main`` of scripts one after the other, with a live bar for each."""
     columns = "{task.fields[name]:16}", BarColumn(30), TimeElapsedColumn(), "{task.description}"
-    bars = Progress(*(TextColumn(c) if isinstance(c, str) else c for c in columns))
+    columns = [TextColumn(c) if isinstance(c, str) else c for c in columns]
+    bars = Progress(*columns, refresh_per_second=2)
     with bars:
         for script in scripts:
             bar = bars.add_task("", total=1.0, name=Path(script.__code__.co_filename).stem)
@@ -191,9 +192,11 @@ def panels(rows: int, columns: int, height: float, **options) -> tuple[Figure, n
     return figure, axes
 
 
-def mark_end(ax, x: np.ndarray, y: np.ndarray, colour) -> None:
-    """Put a cross on the last point of a curve that stopped."""
-    ax.plot(x[-1:], y[-1:], color=colour, zorder=5, **END)
+def curve(ax, run: Outcome, x: np.ndarray, y: np.ndarray, **style) -> None:
+    """Draw a curve of a run, with a cross at its end if the run stopped."""
+    ax.plot(x, y, **style)
+    if not run.completed:
+        ax.plot(x[-1:], y[-1:], color=style["color"], zorder=5, **END)
 
 
 def zoom(ax, place: tuple, xlim: tuple, ylim: tuple) -> None:
