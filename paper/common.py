@@ -16,6 +16,7 @@ import numpy as np
 import rich
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
+from rich.box import SIMPLE_HEAD
 from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
 from rich.table import Table
 
@@ -177,10 +178,19 @@ def warm_up() -> None:
 
 def show(title: str, header: Iterable[str], rows: Iterable[Iterable]) -> None:
     """Print a table; floats with three digits."""
-    table = Table(*header, title=title, title_justify="left")
+    style = {"box": SIMPLE_HEAD, "show_edge": False, "pad_edge": False, "title_justify": "left",
+             "padding": (0, 1, 0, 0)}  # fmt: skip
+    table = Table(*header, title=title, **style)
     for row in rows:
         table.add_row(*(f"{x:.3g}" if isinstance(x, float) else str(x) for x in row))
     rich.print(table)
+
+
+def report(name: str, title: str, header: Iterable[str], rows: Iterable[Iterable]) -> None:
+    """Write a table to the output folder and print it."""
+    rows = list(rows)
+    write_csv(name, header, rows)
+    show(title, header, rows)
 
 
 def panels(rows: int, columns: int, height: float, **options) -> tuple[Figure, np.ndarray]:

@@ -16,19 +16,19 @@ from softafm import solvers
 from softafm.plotting import COLOURS
 
 RANGES = {
-    "2000-6000": np.geomspace(2000, 6000, 26).round().astype(int).tolist(),
-    "6000-40000": np.geomspace(6001, 40_000, 26).round().astype(int).tolist(),
+    "<6000": np.geomspace(2000, 6000, 26).round().astype(int).tolist(),
+    "<40000": np.geomspace(6001, 40_000, 26).round().astype(int).tolist(),
 }
-TOLERANCES = {"3e-2 to 1e-3": np.geomspace(3e-2, 1e-3, 26).tolist()}
+TOLERANCES = {"150-400": np.geomspace(3e-2, 1e-3, 26).tolist()}
 STEPPERS = {
     "Euler": solvers.ForwardEuler(),
     "AB2": solvers.AdamsBashforth(2),
     "RK4": solvers.RungeKutta4(),
 }
 EXPLICIT = [("B", "Euler"), ("B", "AB2"), ("E", "Euler"), ("E", "AB2"), ("E", "RK4")]
-DEFAULT = ("default", "solver")
+DEFAULT = ("default", "")
 OBSERVABLES = {"virial": "virial V", "dissipation": "dissipation E"}
-TAPS = {"polyethylene": "ldpe-tap-setpoint-0.8", "polystyrene": "ps-tap-gap-1.0nm"}
+TAPS = {"LDPE": "ldpe-tap-setpoint-0.8", "PS": "ps-tap-gap-1.0nm"}
 
 
 def main(progress=None):
@@ -59,16 +59,16 @@ def main(progress=None):
         ((job[0], " ".join(job[1]), steps(job, run), *(errors[*job, k] for k in OBSERVABLES),
           run.ending, run.warned) for job, run in runs.items()),
     )  # fmt: skip
-    header = ("sample", "setup", "range", "V mean %", "max-min", "std", "E mean %", "max-min", "std",
-              "blown", "warned")  # fmt: skip
+    header = ("tap", "setup", "steps", "V mean", "range", "std", "E mean", "range", "std",
+              "in", "off", "warn")  # fmt: skip
     rows = [
         row(sample, kind, name, runs, errors)
         for sample in TAPS
         for kind in (*EXPLICIT, DEFAULT)
         for name in choices_of(kind)
     ]
-    common.write_csv("fold_scatter_summary", header, rows)
-    common.show("Scatter over 26 numbers of steps, or tolerances", header, rows)
+    title = "Errors in % over 26 numbers of steps or tolerances; blow-ups at snap-in, pull-off"
+    common.report("fold_scatter_summary", title, header, rows)
     common.save_figure(draw(runs, errors), "fold_scatter")
 
 
@@ -92,13 +92,16 @@ def steps(job, run):
 
 def row(sample, kind, name, runs, errors):
     """One row of the summary: mean, range and standard deviation in per cent, failures."""
-    mine = [(sample, kind, choice) for choice in choices_of(kind)[name]]
+    jobs = [(sample, kind, choice) for choice in choices_of(kind)[name]]
+    mine = [runs[job] for job in jobs]
     spread = []
     for key in OBSERVABLES:
-        values = np.array([errors[*job, key] for job in mine if runs[job].completed])
+        values = np.array([errors[*job, key] for job in jobs if runs[job].completed])
         spread += [f"{f(values):.2f}" for f in (np.mean, np.ptp, np.std)]
-    blown = sum(not runs[job].completed for job in mine)
-    return sample, " ".join(kind), name, *spread, blown, sum(runs[job].warned for job in mine)
+    # Runs stop at snap-in, before the turn of the motion, or at pull-off, after it.
+    stops = [run.tip_height[-1] > run.tip_height[-2] for run in mine if not run.completed]
+    failures = stops.count(False), stops.count(True), sum(run.warned for run in mine)
+    return sample, " ".join(kind), name, *spread, *failures
 
 
 def draw(runs, errors):
@@ -125,7 +128,7 @@ def draw(runs, errors):
         ax.set_ylim(-50, 50)
         ax.set_yticks([-10, -1, 0, 1, 10], ["−10", "−1", "0", "1", "10"])
         if panel < 2:
-            ax.set_title(sample, fontsize=11)
+            ax.set_title(f"{sample} tap", fontsize=11)
         else:
             ax.set_xlabel("number of steps")
         ax.set_ylabel(f"error of {OBSERVABLES[key]} (%)")

@@ -481,6 +481,15 @@ def test_a_blow_up_is_told_with_the_history_before(solver):
     assert past.diagnostics["steps"] == past.time.size - 1
 
 
+@pytest.mark.parametrize("expand", ["deformation", "gap"])
+def test_one_function_bears_the_force_of_a_rigid_surface(expand):
+    """The surface rises and sinks as a whole; with the gap expanded it even follows the tip."""
+    solver = solvers.EnhancedAttard(1, 30, expand=expand, steps=4000)
+    found = solver.solve(CONTACT, RAMP)
+    assert np.all(np.isfinite(found.force))
+    assert found.force.max() > 0
+
+
 def test_an_iteration_that_does_not_converge_says_so():
     for solver in (
         solvers.Attard(20, DOMAIN, steps=400, relaxation=1.0),
