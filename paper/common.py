@@ -16,6 +16,7 @@ import numpy as np
 import rich
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
+from rich.box import SIMPLE_HEAD
 from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
 from rich.table import Table
 
@@ -160,7 +161,8 @@ def tracked(jobs: Iterable, progress: Callable | None, message: Callable) -> Ite
 def run(*scripts: Callable) -> None:
     """Run the ``main`` of scripts one after the other, with a live bar for each."""
     columns = "{task.fields[name]:16}", BarColumn(30), TimeElapsedColumn(), "{task.description}"
-    bars = Progress(*(TextColumn(c) if isinstance(c, str) else c for c in columns))
+    columns = [TextColumn(c) if isinstance(c, str) else c for c in columns]
+    bars = Progress(*columns, refresh_per_second=2)
     with bars:
         for script in scripts:
             bar = bars.add_task("", total=1.0, name=Path(script.__code__.co_filename).stem)
@@ -176,10 +178,19 @@ def warm_up() -> None:
 
 def show(title: str, header: Iterable[str], rows: Iterable[Iterable]) -> None:
     """Print a table; floats with three digits."""
-    table = Table(*header, title=title, title_justify="left")
+    style = {"box": SIMPLE_HEAD, "show_edge": False, "pad_edge": False, "title_justify": "left",
+             "padding": (0, 1, 0, 0)}  # fmt: skip
+    table = Table(*header, title=title, **style)
     for row in rows:
         table.add_row(*(f"{x:.3g}" if isinstance(x, float) else str(x) for x in row))
     rich.print(table)
+
+
+def report(name: str, title: str, header: Iterable[str], rows: Iterable[Iterable]) -> None:
+    """Write a table to the output folder and print it."""
+    rows = list(rows)
+    write_csv(name, header, rows)
+    show(title, header, rows)
 
 
 def panels(rows: int, columns: int, height: float, **options) -> tuple[Figure, np.ndarray]:
@@ -191,9 +202,11 @@ def panels(rows: int, columns: int, height: float, **options) -> tuple[Figure, n
     return figure, axes
 
 
-def mark_end(ax, x: np.ndarray, y: np.ndarray, colour) -> None:
-    """Put a cross on the last point of a curve that stopped."""
-    ax.plot(x[-1:], y[-1:], color=colour, zorder=5, **END)
+def curve(ax, run: Outcome, x: np.ndarray, y: np.ndarray, **style) -> None:
+    """Draw a curve of a run, with a cross at its end if the run stopped."""
+    ax.plot(x, y, **style)
+    if not run.completed:
+        ax.plot(x[-1:], y[-1:], color=style["color"], zorder=5, **END)
 
 
 def zoom(ax, place: tuple, xlim: tuple, ylim: tuple) -> None:

@@ -64,14 +64,8 @@ def report(runs, converged):
         errors = [run.error(key, converged[name, speed]) for key in OBSERVABLES]
         given = 10 * READINGS[name], speed, letter
         table.append([*given, *values, *errors, run.seconds, run.ending, run.warned])
-        summary.append(
-            [
-                *given,
-                *("-" if np.isnan(e) else f"{e:+.2f}" for e in errors),
-                f"{run.seconds:.2f}",
-                ending,
-            ]
-        )
+        shown = ("-" if np.isnan(error) else f"{error:+.2f}" for error in errors)
+        summary.append([*given, *shown, f"{run.seconds:.2f}", ending])
     common.write_csv(
         "fig3_triangle",
         ("reduced_E0_GPa", "speed_um_per_s", "solver",
@@ -94,10 +88,7 @@ def draw(name, runs):
     for ax, speed in zip(axes, SPEEDS, strict=True):
         for letter, style in STYLES.items():
             run = runs[speed, letter]
-            height, force = 1e9 * run.tip_height, 1e6 * run.force
-            ax.plot(height, force, **style)
-            if not run.completed:
-                common.mark_end(ax, height, force, style["color"])
+            common.curve(ax, run, 1e9 * run.tip_height, 1e6 * run.force, **style)
         away = runs[speed, "default"]
         at = 1e9 * away.tip_height[away.force < away.observables["force_min"] / 10][-1]
         drop = 1e6 * away.observables["force_min"]

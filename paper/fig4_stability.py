@@ -15,6 +15,7 @@ import common
 import numpy as np
 from matplotlib import colormaps
 from matplotlib.lines import Line2D
+from matplotlib.ticker import NullLocator
 
 import softafm as sa
 from softafm import solvers
@@ -59,10 +60,7 @@ def main(progress=None):
     )  # fmt: skip
     common.show(
         "Larger error of V and E, %: in brackets above 10, a dash where a run stopped",
-        (
-            "z0, nm",
-            *(f"{stepper} {steps // 1000}k" if steps else stepper for stepper, steps in RUNS),
-        ),
+        ("z0, nm", *(f"{name} {steps // 1000}k" if steps else name for name, steps in RUNS)),
         ([z0, *(verdict(errors[z0, run]) for run in RUNS)] for z0 in GAPS),
     )
     draw(runs)
@@ -85,7 +83,7 @@ def verdict(errors):
     worst = max(map(abs, errors))
     if np.isnan(worst):
         return "-"
-    return f"{worst:.2g}" if worst <= TOLERATED else f"({worst:.0f})"
+    return f"{worst:.1f}" if worst <= TOLERATED else f"({worst:.0f})"
 
 
 def draw(runs):
@@ -93,32 +91,28 @@ def draw(runs):
     figure, axes = common.panels(1, len(DRAWN), 5.0, sharey=True)
     colours = colormaps["turbo"](np.linspace(0.03, 0.97, len(GAPS)))
     for ax, (title, which) in zip(axes, DRAWN.items(), strict=True):
-        ax.axhline(0, color="0.6", linewidth=0.6, zorder=0)
         for z0, colour in zip(GAPS, colours, strict=True):
             run = runs[z0, which]
-            time, force = 1e6 * (run.time - 0.5 / MOTION.frequency), 1e9 * run.force
-            ax.plot(time, force, color=colour, linewidth=1.3)
-            if not run.completed:
-                common.mark_end(ax, time, force, colour)
+            time = 1e6 * (run.time - 0.5 / MOTION.frequency)
+            common.curve(ax, run, time, 1e9 * run.force, color=colour, linewidth=1.3)
         ax.set_title(title, fontsize=11)
         ax.set_xlabel("time from the lowest point (µs)")
         ax.set_xlim(-0.4, 0.9)
-        stopped = [z0 for z0 in GAPS if not runs[z0, which].completed]
+        stopped = [f"{z0} nm" for z0 in GAPS if not runs[z0, which].completed]
         if stopped:
-            common.zoom(ax, (0.45, 0.16, 0.5, 0.3), (-0.281, -0.266), (-5.2, 0))
-            ax.text(
-                0.4, -48, f"stopped:\n{', '.join(map(str, stopped))} nm", ha="center", fontsize=9
-            )
+            common.zoom(ax, (0.42, 0.07, 0.54, 0.27), (-0.281, -0.266), (-5.2, 0))
+            text = "\n".join(["stopped at", *stopped])
+            ax.text(0.97, 0.97, text, transform=ax.transAxes, ha="right", va="top", fontsize=9)
+        ax.axhline(0, color="0.6", linewidth=0.6, zorder=0)
     axes[0].set_yscale("asinh", linear_width=2)
-    ticks = -50, -20, -10, -5, -2, 0, 2, 5
-    axes[0].set_yticks(ticks, ticks)
+    axes[0].set_yticks([-50, -20, -10, -5, -2, 0, 2, 5])
+    axes[0].yaxis.set_major_formatter("{x:.0f}")
+    axes[0].yaxis.set_minor_locator(NullLocator())
     axes[0].set_ylim(-65, 7)
     axes[0].set_ylabel("force on the tip (nN)")
     entries = [Line2D([], [], color=c, label=z) for c, z in zip(colours, GAPS, strict=True)]
-    figure.legend(
-        handles=[*entries, common.END_ENTRY], loc="outside right center", frameon=False,
-        title="$z_0$ (nm)",
-    )  # fmt: skip
+    entries.append(common.END_ENTRY)
+    figure.legend(handles=entries, title="$z_0$ (nm)", loc="outside right center", frameon=False)
     common.save_figure(figure, "fig4_stability")
 
 

@@ -59,8 +59,8 @@ def report(name, title, runs, converged):
     exact = {key: runs["B", 0].error(key, converged) for key in OBSERVABLES}
     rows = [threshold_row(letter, limit, errors, exact) for letter in "CDEFG" for limit in (1, 2)]
     header = ("setup", "below", "V", "E", "both", "both*", "both, against B", "blown up at")
-    common.write_csv(f"{name}_thresholds", header, rows)
-    common.show(
+    common.report(
+        f"{name}_thresholds",
         f"{title}: smallest n_b from which errors stay below a limit (* blow-ups left out); "
         f"B: {exact['virial']:+.2f} % in V, {exact['dissipation']:+.2f} % in E",
         header, rows,
@@ -91,6 +91,7 @@ def draw(title, runs, errors, exact, converged):
     figure, axes = common.panels(2, 2, 6.8, sharex=True)
     figure.suptitle(f"{title[0].upper()}{title[1:]}: {NODES} nodes, {STEPS} steps", fontsize=11)
     for column, (key, label) in enumerate(OBSERVABLES.items()):
+        limits = (0.85, 1.3) if key == "virial" else (0.6, 1.05)
         value, error = axes[column], axes[2 + column]
         for row, letter in enumerate("CDEFG"):
             values = [1e18 * runs[letter, n].observables.get(key, np.nan) for n in BASIS_SIZES]
@@ -103,7 +104,7 @@ def draw(title, runs, errors, exact, converged):
                 transform=error.get_xaxis_transform(),
             )  # fmt: skip
         value.axhline(1e18 * converged[key], color="black", linewidth=0.8)
-        value.set_ylim(sorted(1e18 * converged[key] * part for part in (0.6, 1.1)))
+        value.set_ylim(sorted(1e18 * converged[key] * part for part in limits))
         value.set_ylabel(f"{label} (aJ)")
         error.set_yscale("log")
         error.set_ylim(1e-3, 200)

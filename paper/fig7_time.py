@@ -11,7 +11,7 @@ iteration. A second panel shows time against the number of unknowns. Times are t
 run, without its set-up, which is kept between calls, and without virial and dissipation.
 """
 
-from time import perf_counter
+from timeit import repeat
 
 import common
 import numpy as np
@@ -22,7 +22,7 @@ from softafm import solvers
 ROUNDS = 5
 COMMON = {"nodes": 70, "steps": 10_000, "domain": common.DOMAIN}
 SIZES = (10, 20, 25, 30, 35, 40, 50, 60, 70)
-RELAXATIONS = (None, 0.2, 0.1, 0.05, 0.02, 0.01, 0.005, 0.002, 0.001)
+RELAXATIONS = (0.2, 0.1, 0.05, 0.02, 0.01, 0.005, 0.002, 0.001)
 ITERATION_TOLERANCES = (1e-4, 1e-6, 1e-9)
 
 
@@ -37,19 +37,15 @@ def competitors():
 
 def sizes():
     """Setups B and E of growing size by (letter, unknowns)."""
-    return {("B", n): common.setup("B", **{**COMMON, "nodes": n}) for n in SIZES} | {
-        ("E", n): common.setup("E", **COMMON, functions=n) for n in SIZES
-    }
+    nodal = {("B", n): common.setup("B", **COMMON | {"nodes": n}) for n in SIZES}
+    return nodal | {("E", n): common.setup("E", **COMMON, functions=n) for n in SIZES}
 
 
 def iterations():
     """Setup A by (relaxation, iteration tolerance)."""
-    cases = [(None, t) for t in ITERATION_TOLERANCES] + [(r, 1e-6) for r in RELAXATIONS[1:]]
+    cases = [(None, t) for t in ITERATION_TOLERANCES] + [(r, 1e-6) for r in RELAXATIONS]
     return {
-        (relaxation, tolerance): common.setup(
-            "A", **COMMON, relaxation=relaxation, iteration_tolerance=tolerance
-        )
-        for relaxation, tolerance in cases
+        (w, t): common.setup("A", **COMMON, relaxation=w, iteration_tolerance=t) for w, t in cases
     }
 
 
@@ -63,9 +59,8 @@ def main(progress=None):
         runs.setdefault(key, []).append(common.tap(common.LDPE, common.DEEP_TAP, solver))
     # Time in ms, and the run itself.
     fastest = {key: (min(map(milliseconds, of_key)), of_key[-1]) for key, of_key in runs.items()}
-    converged = common.converged_tap(common.LDPE, common.DEEP_TAP)
-    report_times(fastest, converged)
-    report_sizes(fastest, converged)
+    report_times("fig7_time", "Time of one cycle", competitors(), fastest)
+    report_times("fig7_time_sizes", "B by nodes; E by functions", sizes(), fastest)
     report_iterations(fastest)
     common.save_figure(draw(fastest), "fig7_time")
 
@@ -75,61 +70,46 @@ def milliseconds(run):
     return 1e3 * run.attributes.get("solver_wall_time", np.nan)
 
 
-def errors(run, converged):
-    """Errors of virial and dissipation in per cent."""
-    return [run.error(key, converged) for key in ("virial", "dissipation")]
-
-
-def report_times(fastest, converged):
-    """Table of the paper's setups."""
-    header = ("setup", "ms", "time / E", "time / default", "V error %", "E error %", "ending")
+def report_times(name, title, keys, fastest):
+    """Table of times, their ratios and errors."""
+    converged = common.converged_tap(common.LDPE, common.DEEP_TAP)
+    header = ("setup", "ms", "/ E", "/ default", "V error %", "E error %", "ending")
     rows = []
-    for name in competitors():
-        time, run = fastest[name]
+    for key in keys:
+        time, run = fastest[key]
         ratios = time / fastest["E"][0], time / fastest["default"][0]
-        rows.append((name, time, *ratios, *errors(run, converged), run.ending))
-    common.write_csv("fig7_time", header, rows)
-    common.show("Time of one cycle, fastest of interleaved rounds", header, rows)
-
-
-def report_sizes(fastest, converged):
-    """Table of B and E of growing size."""
-    header = ("setup", "unknowns", "ms", "V error %", "E error %")
-    rows = [(*key, fastest[key][0], *errors(fastest[key][1], converged)) for key in sizes()]
-    common.write_csv("fig7_time_sizes", header, rows)
-    common.show("Setup B with so many nodes; E with so many functions, 70 nodes", header, rows)
+        errors = [run.error(of, converged) for of in ("virial", "dissipation")]
+        label = key if isinstance(key, str) else f"{key[0]}, {key[1]}"
+        rows.append((label, time, *ratios, *errors, run.ending))
+    common.report(name, title, header, rows)
 
 
 def report_iterations(fastest):
     """Table of setup A's iteration, and the estimate of one without a stored matrix."""
-    header = ("relaxation", "iteration tolerance", "ms", "time / E", "iterations a step", "ending")
+    header = ("relaxation", "tolerance", "ms", "time / E", "iterations/step", "ending")
     rows = []
     for key in iterations():
         time, run = fastest[key]
         per_step = run.attributes.get("solver_iterations", np.nan) / COMMON["steps"]
         rows.append((key[0] or "chosen", key[1], time, time / fastest["E"][0], per_step,
                      run.ending))  # fmt: skip
-    common.write_csv("fig7_time_iterations", header, rows)
-    common.show("Setup A", header, rows)
+    common.report("fig7_time_iterations", "Setup A", header, rows)
     kernel = kernel_milliseconds()
     ratios = [
         f"{row[4] * COMMON['steps'] * kernel / fastest['E'][0]:,.0f} (relaxation {row[0]})"
         for row in rows
         if row[0] in ("chosen", 0.02, 0.001) and row[1] == 1e-6
     ]
-    print(f"Evaluating the kernel between all nodes takes {kernel:.2f} ms; done in every iteration "
-          f"it would make A slower than E by factors of {', '.join(ratios)}.")  # fmt: skip
+    print(
+        f"Evaluating the kernel between all nodes takes {kernel:.2f} ms; done in every iteration "
+        f"it would make A slower than E by factors of {', '.join(ratios)}."
+    )
 
 
 def kernel_milliseconds():
     """Time of evaluating the elliptic integral between all nodes once, ms."""
     parameter = np.random.default_rng(0).uniform(0.01, 1, COMMON["nodes"] ** 2)
-    times = []
-    for _ in range(20):
-        started = perf_counter()
-        ellipkm1(parameter)
-        times.append(perf_counter() - started)
-    return 1e3 * min(times)
+    return 1e3 * min(repeat(lambda: ellipkm1(parameter), number=1, repeat=20))
 
 
 def draw(fastest):

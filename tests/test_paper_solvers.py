@@ -481,6 +481,19 @@ def test_a_blow_up_is_told_with_the_history_before(solver):
     assert past.diagnostics["steps"] == past.time.size - 1
 
 
+def test_one_function_bears_the_force_of_a_rigid_surface():
+    found = solvers.EnhancedAttard(1, 30, steps=4000).solve(CONTACT, RAMP)
+    assert np.ptp(found.axis_deformation) > 0
+    assert found.force.max() > 2e-9
+
+
+def test_a_gap_that_is_the_same_everywhere_is_in_contact_up_to_the_rim():
+    solver = solvers.EnhancedAttard(1, 30, expand="gap", domain=1.5e-9, steps=4000)
+    with pytest.warns(sa.AccuracyWarning, match="choose a larger domain"):
+        found = solver.solve(CONTACT, RAMP)
+    assert found.contact_radius.max() == 1.5e-9
+
+
 def test_an_iteration_that_does_not_converge_says_so():
     for solver in (
         solvers.Attard(20, DOMAIN, steps=400, relaxation=1.0),

@@ -295,15 +295,16 @@ def note(setup, potential, material, controls, height, work, record):
     record[R_FORCE] = total + pi * rim * rim / profile * work.scratch[0]
     record[R_AXIS] = setup.axis[0] * work.displacement[0] + setup.axis[1] * work.displacement[1]
 
-    record[R_EDGE] = 0.0
-    if work.gap[0] < controls.gap_of_tension:
-        i = 1
-        while i < n - 1 and work.gap[i] < controls.gap_of_tension:
-            i += 1
-        inner, outer = work.gap[i - 1], work.gap[i]
-        part = (controls.gap_of_tension - inner) / (outer - inner)
-        r0, r1 = setup.radius[i - 1], setup.radius[i]
-        record[R_EDGE] = r0 + min(part, 1.0) * (r1 - r0)
+    edge = setup.radius[n - 1]
+    for i in range(n):
+        if work.gap[i] >= controls.gap_of_tension:
+            edge = 0.0
+            if i > 0:
+                inner = work.gap[i - 1]
+                part = (controls.gap_of_tension - inner) / (work.gap[i] - inner)
+                edge = setup.radius[i - 1] + part * (setup.radius[i] - setup.radius[i - 1])
+            break
+    record[R_EDGE] = edge
 
     loss = 0.0
     for m in range(material.retardation.size):
