@@ -7,6 +7,7 @@ from softafm.animation import animate
 from softafm.cantilever import Cantilever
 from softafm.contact import Contact
 from softafm.errors import AccuracyWarning, DivergedError
+from softafm.modes.approach import approach_curve
 from softafm.modes.force_distance import force_distance
 from softafm.modes.spectroscopy import force_spectroscopy
 from softafm.modes.tapping import tapping_cycle
@@ -31,6 +32,7 @@ __all__ = [
     "Trajectory",
     "Triangle",
     "animate",
+    "approach_curve",
     "export",
     "force_distance",
     "force_spectroscopy",

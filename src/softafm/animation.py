@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from xarray import Dataset
 
 SUFFIXES = (".mp4", ".gif", ".html")
-_MOST_FRAMES = 2000
+_MOST_FRAMES = 1000
 _SIZE = (8.0, 5.5)  # inches
 _DPI = {".gif": 100, ".mp4": 160}  # mp4 needs even numbers of pixels
 _STAGE = (0.09, 0.38, 0.895, 0.6)  # left, bottom, width, height in parts of the picture
@@ -63,7 +63,7 @@ def animate(
     path
         File to write; its suffix chooses the format. It appears whole or not at all.
     frames
-        Number of frames, 2 to 2000.
+        Number of frames, 2 to 1000.
     seconds
         Duration of the movie, s.
     start, stop
@@ -223,7 +223,7 @@ def _write_mp4(movie: _Movie, path, seconds: float, shown: Shown) -> None:
     with tempfile.TemporaryFile() as said:
         process = subprocess.Popen(command, stdin=subprocess.PIPE, stdout=said, stderr=said)
         assert process.stdin is not None
-        with process, suppress(BrokenPipeError):  # then ffmpeg has ended, and said why
+        with suppress(BrokenPipeError), process:  # then ffmpeg has ended, and said why
             for picture in _pictures(movie, dpi, shown):
                 process.stdin.write(picture.tobytes())
             process.stdin.close()
@@ -241,14 +241,14 @@ def _write_html(movie: _Movie, path, seconds: float, shown: Shown) -> None:
     in_time, in_force = movie.in_time, movie.in_force
     seen = np.flatnonzero(scenes.r <= view.half_width)
     seen = np.arange(min(seen[-1] + 2, scenes.r.size))
-    seen = seen[:: ceil(seen.size / _PAGE_POINTS)]
+    seen = np.union1d(seen[:: ceil(seen.size / _PAGE_POINTS)], seen[-1:])
     quantum = 2e-4 * (view.top - view.bottom)
 
     def rounded(values):
         return np.round(values / quantum).astype(int).tolist()
 
-    def short(values):
-        return [float(f"{value:.5g}") for value in values]
+    def short(values, digits=5):
+        return [float(f"{value:.{digits}g}") for value in values]
 
     data = {
         "seconds": seconds,
@@ -261,11 +261,11 @@ def _write_html(movie: _Movie, path, seconds: float, shown: Shown) -> None:
         "tip": rounded(scenes.tip[0, seen] - scenes.tip[0, 0]),
         "apex": rounded(scenes.tip[:, 0]),
         "surface": rounded(scenes.surface[:, seen]),
-        "time": short(in_time * scenes.time),
+        "time": short(in_time * scenes.time, 9),
         "force": short(in_force * scenes.force),
         "moment": [movie.moment(time) for time in scenes.time],
         "strength": [movie.strength(value) for value in scenes.force],
-        "curve": [short(in_time * movie.curve_time), short(in_force * movie.curve_force)],
+        "curve": [short(in_time * movie.curve_time, 9), short(in_force * movie.curve_force)],
         "titles": movie.titles,
         "colours": {**_COLOURS, "tip": TIP_COLOURS, "sample": SAMPLE_COLOURS},
     }

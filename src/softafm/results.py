@@ -36,6 +36,12 @@ VARIABLES = {
     "force_min_approach": ("N", "smallest force before the lowest height"),
     "loop_energy": ("J", "energy dissipated in the motion, -∮F dh0 or -∮F dZ"),
     "viscous_loss": ("J", "energy dissipated in the sample"),
+    "branch": ("1", "branch of solutions"),
+    "amplitude_ratio": ("1", "amplitude over free amplitude"),
+    "sweep_height": ("m", "mean height of the tip in a sweep"),
+    "mean_height": ("m", "mean height of the tip"),
+    "amplitude": ("m", "amplitude of the tip"),
+    "phase": ("degree", "lag of the deflection behind the drive"),
     "virial": ("J", "virial, mean of F·(h0 - mean height) over a cycle"),
     "dissipation": ("J", "energy dissipated in a cycle, -∮F dh0"),
     "cycles_run": ("1", "cycles that were run"),
@@ -47,15 +53,28 @@ VARIABLES = {
     "jump_energy": ("J", "energy released by elastic jumps"),
 }
 
+_DIRECTIONS = {"approach": "falls", "retract": "rises"}
 _FORMAT = "softafm result 1"
 
 
 def variable(name: str, dims, values) -> "Variable":
-    """Return values under a known name, with its unit and long name as attributes."""
+    """Return values under a known name, with its unit and long name as attributes.
+
+    A name may be prefixed by ``approach_`` or ``retract_``.
+    """
     from xarray import Variable
 
-    units, long_name = VARIABLES[name]
-    return Variable(dims, np.asarray(values, float), {"units": units, "long_name": long_name})
+    units, long_name = VARIABLES[name] if name in VARIABLES else _swept(name)
+    array = np.asarray(values)
+    array = array if array.dtype.kind == "U" else array.astype(float)
+    return Variable(dims, array, {"units": units, "long_name": long_name})
+
+
+def _swept(name: str) -> tuple[str, str]:
+    """Return unit and long name of what is recorded in a sweep of the height."""
+    direction, _, rest = name.partition("_")
+    units, long_name = VARIABLES[rest]
+    return units, f"{long_name}, while the height {_DIRECTIONS[direction]}"
 
 
 def describe(thing) -> dict:
@@ -95,19 +114,41 @@ def dataset(
         data["deformation"] = variable("deformation", ("time", "r"), shapes.deformation)
         data["gap"] = variable("gap", ("time", "r"), gap)
         data["pressure"] = variable("pressure", ("time", "r"), contact.surface.pressure(gap))
+    parts = {"motion": motion} if cantilever is None else {"motion": motion, "cantilever": cantilever}
+    attributes = _provenance(
+        mode, contact, parts, solver, tolerance, history.warnings, history.diagnostics
+    )
+    return Dataset(data, coordinates, attributes)
+
+
+def curve_dataset(
+    mode: str, contact, parts: dict, solver, tolerance: float, data, coordinates, warnings,
+    diagnostics,
+) -> "Dataset":  # fmt: skip
+    """Assemble a result that is not a history: variables and coordinates by name as (dims, values).
+
+    ``parts`` are what took part besides the contact, by name: objects, or dictionaries.
+    """
+    from xarray import Dataset
+
+    def known(arrays):
+        return {name: variable(name, dims, values) for name, (dims, values) in arrays.items()}
+
+    attributes = _provenance(mode, contact, parts, solver, tolerance, warnings, diagnostics)
+    return Dataset(known(data), known(coordinates), attributes)
+
+
+def _provenance(mode, contact, parts, solver, tolerance, warnings, diagnostics) -> dict:
+    """Return the attributes of a result: its whole input, and how it was computed."""
+    things = {"tip": contact.tip, "sample": contact.sample, "surface": contact.surface, **parts}
     experiment = {
-        "mode": mode,
-        "tip": describe(contact.tip),
-        "sample": describe(contact.sample),
-        "surface": describe(contact.surface),
-        "motion": describe(motion),
+        name: thing if isinstance(thing, dict) else describe(thing)
+        for name, thing in things.items()
     }
-    if cantilever is not None:
-        experiment["cantilever"] = describe(cantilever)
-    attributes = {
+    return {
         "format": _FORMAT,
         "mode": mode,
-        "experiment": json.dumps(experiment),
+        "experiment": json.dumps({"mode": mode, **experiment}),
         "solver": json.dumps(describe(solver)),
         **({"tolerance": float(tolerance)} if solver.adaptive else {}),
         "softafm_version": softafm.__version__,
@@ -115,10 +156,9 @@ def dataset(
         "tabor_instantaneous": contact.tabor_instantaneous,
         "tabor_relaxed": contact.tabor_relaxed,
         "cohesive_length": contact.cohesive_length,
-        "warnings": "\n".join(history.warnings),
-        **{f"solver_{name}": value for name, value in history.diagnostics.items()},
+        "warnings": "\n".join(warnings),
+        **{f"solver_{name}": value for name, value in diagnostics.items()},
     }
-    return Dataset(data, coordinates, attributes)
 
 
 def save(result: "Dataset", path, *, overwrite: bool = False) -> None:

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from softafm._validate import finite
 from softafm.units import readable
 
 if TYPE_CHECKING:
@@ -79,16 +80,17 @@ def window(
     """
     time = result["time"].values
     first, last = float(time[0]), float(time[-1])
-    low = first if start is None else max(float(start), first)
-    high = last if stop is None else min(float(stop), last)
+    given = {
+        name: finite(name, value, "s")
+        for name, value in (("start", start), ("stop", stop))
+        if value is not None
+    }
+    low = max(given.get("start", first), first)
+    high = min(given.get("stop", last), last)
     if not low < high:
-        given = ", ".join(
-            f"{name} = {readable(float(value), 's')}"
-            for name, value in (("start", start), ("stop", stop))
-            if value is not None
-        )
+        written = ", ".join(f"{name} = {readable(value, 's')}" for name, value in given.items())
         raise ValueError(
-            f"{given}: must be in order and overlap the run, from {readable(first, 's')} "
+            f"{written}: must be in order and overlap the run, from {readable(first, 's')} "
             f"to {readable(last, 's')}"
         )
     if start is None and stop is None and result.sizes.get("cycle", 1) > 1:
@@ -157,8 +159,8 @@ def view_of(result: "Dataset", start: float, stop: float, shape: float) -> View:
     """Return the view that holds the contact between two times, for a picture of this shape.
 
     ``shape`` is the width of the picture over its height. The view reaches out two contact radii
-    and shows more than the surface's whole movement, and the tip at its lowest. Heights are stretched only if that
-    movement would otherwise fill less than an eleventh of the picture.
+    and shows more than the surface's whole movement, and the tip at its lowest. Heights are
+    stretched only if all that would otherwise fill less than an eleventh of the picture.
     """
     time, r = result["time"].values, result["r"].values
     steps = slice(

@@ -1,6 +1,6 @@
-"""Amplitude modulation: which heights a driven lever can have for its amplitude, and which it takes.
+"""Amplitude modulation: the heights that go with an amplitude, and which of them a lever takes.
 
-Rajabifar et al. 2021, equations (29) to (32).
+Rajabifar et al. 2021, equations (29) to (32), and their general form off resonance.
 """
 
 import warnings
@@ -12,6 +12,7 @@ from softafm._validate import finite, positive, tolerance_of
 from softafm.cantilever import Cantilever
 from softafm.contact import Contact
 from softafm.errors import AccuracyWarning
+from softafm.modes.amplitude_curve import BRANCHES, AmplitudeCurve, Solutions
 from softafm.modes.tap_map import OBSERVABLES, TapMap
 from softafm.modes.tapping import tap_observables
 from softafm.motions import Sine
@@ -23,5 +24,161 @@ from softafm.solvers.energy import Energy
 if TYPE_CHECKING:
     from xarray import Dataset
 
-BRANCHES = ("attractive", "unstable", "repulsive")
-_APPROACHES, _AMPLITUDES, _HEIGHTS = 2000, 500, 241
+_HEIGHTS, _CHECKS = 241, 6
+
+
+def approach_curve(
+    contact: Contact,
+    cantilever: Cantilever,
+    free_amplitude: float,
+    amplitude_ratio,
+    *,
+    drive_frequency: float | None = None,
+    solver=None,
+    tolerance: float = 1e-2,
+    progress: bool | Progress | None = None,
+) -> "Dataset":
+    """Heights of a tapping lever for given amplitudes, and what is recorded on approach and retract.
+
+    The tip oscillates about the mean height Z with amplitude A, in a steady cycle each, and the
+    drive stays what it is. Where several heights belong to one amplitude all are found, and which
+    of them attract follows from the slow drift of amplitude and phase (``softafm.oscillator``).
+
+    Parameters
+    ----------
+    contact
+        Tip, sample and surface law.
+    cantilever
+        With quality factor and frequency.
+    free_amplitude
+        Amplitude A0 away from the sample, m.
+    amplitude_ratio
+        Amplitudes A/A0, each between 0 and 1, shape (n,).
+    drive_frequency
+        Frequency of the drive, Hz; that of the cantilever by default.
+    solver, tolerance, progress
+        As for ``force_distance``.
+
+    Returns
+    -------
+    xarray.Dataset
+        Over (``branch``, ``amplitude_ratio``), branch in attractive (stable, phase above 90°),
+        unstable and repulsive (stable, phase below 90°), NaN where there is no solution:
+        ``mean_height`` Z, ``phase`` (degrees behind the drive), ``virial``, ``dissipation``,
+        ``force_mean``, ``force_max``, ``force_min``, ``contact_time``, ``indentation``. Over
+        ``sweep_height``, what an instrument records while Z comes down (``approach_...``) and goes
+        up again (``retract_...``): ``amplitude``, ``phase`` and the same observables; NaN where
+        the amplitude leaves the range of ``amplitude_ratio``. All SI but the phase.
+
+    Raises
+    ------
+    ValueError
+        If an argument is out of range or the cantilever lacks quality factor or frequency.
+    DivergedError
+        If the solver cannot continue.
+    """
+    tolerance = tolerance_of(tolerance)
+    solver = Energy() if solver is None else solver
+    ratios = _ratios(amplitude_ratio)
+    free_amplitude = positive("free_amplitude", free_amplitude, "m")
+    for name in ("quality_factor", "frequency"):
+        if getattr(cantilever, name) is None:
+            raise ValueError(f"cantilever.{name} = None: must be given for an approach curve")
+    frequency = cantilever.frequency
+    if drive_frequency is not None:
+        frequency = positive("drive_frequency", drive_frequency, "Hz")
+    drive = Drive(
+        cantilever.stiffness, cantilever.quality_factor, frequency / cantilever.frequency,
+        free_amplitude,
+    )  # fmt: skip
+
+    def tap(amplitude, approach):
+        motion = Sine(amplitude + approach, amplitude, frequency, "steady")
+        history = solver.solve(contact, motion, tolerance=tolerance)
+        found = tap_observables(contact, motion, history)
+        return np.array([found[name][1] for name in OBSERVABLES])
+
+    taps = TapMap(
+        tap, drive.excess, ratios.min() * free_amplitude, ratios.max() * free_amplitude,
+        contact.surface.equilibrium_gap, tolerance,
+    )  # fmt: skip
+    with reporting(progress) as report:
+        for done in taps.explore():
+            if report is not None:
+                report(1 - np.exp(-done / 80), f"{done} taps")
+    curve = AmplitudeCurve(taps, drive)
+    found = curve.at_amplitudes(ratios * free_amplitude)
+    warned = tuple(_warnings(tap, drive, tolerance, found))
+    for text in warned:
+        warnings.warn(text, AccuracyWarning, stacklevel=2)
+    data, coordinates = _tables(curve, ratios, found)
+    motion = {
+        "kind": "approach-curve",
+        "free_amplitude": free_amplitude,
+        "amplitude_ratio": ratios.tolist(),
+        "drive_frequency": frequency,
+    }
+    return curve_dataset(
+        "approach-curve", contact, {"motion": motion, "cantilever": cantilever}, solver, tolerance,
+        data, coordinates, warned, {"taps": taps.taps},
+    )  # fmt: skip
+
+
+def _warnings(tap, drive, tolerance, found: Solutions):
+    """Tell of missing and surplus solutions, and run a few again to see whether they hold."""
+    if found.amplitude.size == 0:
+        yield "no height goes with any of the amplitudes: there is nothing to plot"
+        return
+    some = np.unique(np.linspace(0, found.amplitude.size - 1, _CHECKS).astype(int))
+    off = 0.0
+    for amplitude, approach in zip(found.amplitude[some], found.approach[some], strict=True):
+        off = max(off, abs(float(drive.excess(amplitude, *tap(amplitude, approach)[:2]))))
+    if off > 2 * tolerance:
+        yield (
+            f"solutions balance the drive to {off:.2g} only, where {2 * tolerance:.2g} was asked "
+            "for: taps between those that were run are not smooth"
+        )
+    labels = list(zip(found.row, found.branch, strict=True))
+    for branch in ("attractive", "repulsive"):
+        if any(labels.count((row, branch)) > 1 for row in set(found.row)):
+            yield (
+                f"one amplitude has several stable {branch} solutions: mean_height holds the "
+                "farthest, approach_... and retract_... take all into account"
+            )
+
+
+def _tables(curve: AmplitudeCurve, ratios, found: Solutions):
+    """Return variables and coordinates of the dataset, each as (dims, values)."""
+    names = ("mean_height", "phase", *OBSERVABLES)
+    table = np.full((len(names), len(BRANCHES), ratios.size), np.nan)
+    columns = np.vstack([found.amplitude + found.approach, found.phase, curve.observables(found)])
+    for i in np.argsort(found.approach):  # the farthest last
+        table[:, BRANCHES.index(found.branch[i]), found.row[i]] = columns[:, i]
+    data = {
+        name: (("branch", "amplitude_ratio"), values)
+        for name, values in zip(names, table, strict=True)
+    }
+    heights = found.amplitude + found.approach
+    sweep = np.linspace(heights.max(), heights.min(), _HEIGHTS) if heights.size else heights
+    for label, order in (("approach", slice(None)), ("retract", slice(None, None, -1))):
+        amplitude, phase, observables = curve.swept(sweep[order])
+        swept = dict(zip(OBSERVABLES, observables, strict=True))
+        for name, values in {"amplitude": amplitude, "phase": phase, **swept}.items():
+            data[f"{label}_{name}"] = ("sweep_height", values[order])
+    coordinates = {
+        "branch": ("branch", list(BRANCHES)),
+        "amplitude_ratio": ("amplitude_ratio", ratios),
+        "sweep_height": ("sweep_height", sweep),
+    }
+    return data, coordinates
+
+
+def _ratios(values) -> np.ndarray:
+    """Return amplitude ratios as an array, or raise ValueError naming the one that is not."""
+    array = np.atleast_1d(np.asarray(values, float))
+    if array.ndim != 1 or array.size == 0:
+        raise ValueError(f"amplitude_ratio has shape {array.shape}: must be a list of numbers")
+    for i, value in enumerate(array):
+        if not 0 < finite(f"amplitude_ratio[{i}]", value, "") < 1:
+            raise ValueError(f"amplitude_ratio[{i}] = {value:g}: must be above 0 and below 1")
+    return array

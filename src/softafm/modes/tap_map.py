@@ -36,7 +36,8 @@ class TapMap:
         self, tap: Callable, excess: Callable, lowest: float, highest: float, unit: float,
         accuracy: float,
     ):  # fmt: skip
-        self._tap, self._excess, self._unit, self._accuracy = tap, excess, unit, accuracy
+        self._tap, self._excess, self._accuracy = tap, excess, accuracy
+        self.lowest, self.highest, self.unit = lowest, highest, unit
         lines = _LINES if highest > 1.01 * lowest else 1
         nodes = np.cos(np.pi * (np.arange(lines) + 0.5) / lines)[::-1]
         nodes = nodes / nodes[-1] if lines > 1 else np.zeros(1)
@@ -46,38 +47,36 @@ class TapMap:
         self.taps = 0
 
     def explore(self):
-        """Sample all lines, yielding the number of taps after each."""
-        far = self._far_end()
-        deep = self._deep_end()
-        start = np.sign(deep) * np.inf
-        start = np.concatenate(
-            [np.geomspace(far, self._unit, 5), np.linspace(self._unit, deep, 8)[1:]]
-        )
+        """Sample all lines, yielding the number of taps so far after each."""
+        self.farthest, self.nearest = self._far_end(), self._deep_end()
+        outer = np.geomspace(self.farthest, self.unit, 5)
+        start = np.concatenate([np.linspace(self.nearest, self.unit, 8), outer[-2::-1]])
         for line in range(self._logs.size):
             for approach in start:
                 self._sample(line, approach)
                 yield self.taps
-            yield from self._refine(line, np.sort(start))
-        self.nearest_approach, self.farthest_approach = deep, far
-        self._interpolants = [self._interpolant(line) for line in range(self._logs.size)]
+            yield from self._refine(line, start)
+        self._both = [self._interpolant(line, slice(0, 2)) for line in range(self._logs.size)]
+        self._all = [self._interpolant(line) for line in range(self._logs.size)]
 
-    def __call__(self, amplitude, approach, count: int = len(OBSERVABLES)) -> np.ndarray:
-        """Return the first ``count`` observables at amplitudes and approaches of equal shape, m.
+    def virial_and_dissipation(self, amplitude, approach) -> np.ndarray:
+        """V and E, J, at amplitudes and closest approaches, m: shape (2, *broadcast)."""
+        return self._combine(self._both, amplitude, approach)
 
-        Shape (count, *that of the arguments).
-        """
+    def observables(self, amplitude, approach) -> np.ndarray:
+        """All ``OBSERVABLES`` at amplitudes and closest approaches, m: shape (7, *broadcast)."""
+        return self._combine(self._all, amplitude, approach)
+
+    def _combine(self, interpolants, amplitude, approach):
+        """Lagrange's polynomial in ln A through the lines, times √A."""
         amplitude, approach = np.broadcast_arrays(amplitude, approach)
-        log = np.log(amplitude)
-        total = np.zeros((*amplitude.shape, count))
-        for line, interpolant in enumerate(self._interpolants):
-            others = np.delete(self._logs, line)
-            weight = np.prod(
-                [(log - other) / (self._logs[line] - other) for other in others], axis=0
-            )
-            total += np.multiply.outer(np.ones(count), weight).T.reshape(total.shape) * interpolant(
-                approach
-            )[..., :count]
-        return np.moveaxis(total * np.sqrt(amplitude)[..., None], -1, 0)
+        log, total = np.log(amplitude), 0.0
+        for line, interpolant in enumerate(interpolants):
+            weight = np.sqrt(amplitude)
+            for other in np.delete(self._logs, line):
+                weight = weight * (log - other) / (self._logs[line] - other)
+            total = total + weight[..., None] * interpolant(approach)
+        return np.moveaxis(total, -1, 0)
 
     def _sample(self, line: int, approach: float) -> np.ndarray:
         """Observables over √A at a point of a line."""
@@ -96,8 +95,8 @@ class TapMap:
         """Approach at which the largest amplitude hardly feels the surface."""
         top = self._logs.size - 1
         free = self._excess_at(top, np.zeros(2))
-        approach = 4 * self._unit
-        while approach < _FARTHEST * self._unit:
+        approach = 4 * self.unit
+        while approach < _FARTHEST * self.unit:
             if abs(self._excess_at(top, self._sample(top, approach)) - free) < 0.1 * abs(free):
                 break
             approach *= 2
@@ -105,21 +104,22 @@ class TapMap:
 
     def _deep_end(self) -> float:
         """Approach beyond which every line needs more than the drive, and ever more."""
-        deep = -2 * self._unit
+        deep = -2 * self.unit
         for line in range(self._logs.size):
             lowest_possible = -1.8 * np.exp(self._logs[line])
-            while deep > max(-_DEEPEST * self._unit, lowest_possible):
+            while deep > max(-_DEEPEST * self.unit, lowest_possible):
                 sample = self._sample(line, deep)
                 if sample[0] < 0 and self._excess_at(line, sample) > 0.1:
                     break
                 deep *= 1.5
         return float(max(deep, -1.8 * np.exp(self._logs[0])))
 
-    def _interpolant(self, line: int):
+    def _interpolant(self, line: int, which: slice = slice(None)):
         from scipy.interpolate import PchipInterpolator
 
-        approaches = np.array(sorted(self._samples[line]))
-        return PchipInterpolator(approaches, [self._samples[line][d] for d in approaches])
+        approaches = sorted(self._samples[line])
+        values = [self._samples[line][approach][which] for approach in approaches]
+        return PchipInterpolator(approaches, values, extrapolate=False)
 
     def _refine(self, line: int, start):
         """Halve intervals of a line while their middles are not met by interpolation."""
@@ -131,6 +131,6 @@ class TapMap:
                 expected = self._excess_at(line, interpolant(middle))
                 found = self._excess_at(line, self._sample(line, middle))
                 yield self.taps
-                if abs(found - expected) > self._accuracy and high - low > 1e-3 * self._unit:
+                if abs(found - expected) > self._accuracy and high - low > 1e-3 * self.unit:
                     missed += [(low, middle), (middle, high)]
             intervals = missed

@@ -1,0 +1,108 @@
+"""All pairs of amplitude and height that a driven lever can have, and those that it takes."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+BRANCHES = ("attractive", "unstable", "repulsive")
+_APPROACHES, _AMPLITUDES = 2000, 400
+
+
+class Solutions(NamedTuple):
+    """Amplitudes and closest approaches, m, that go together, by the ``row`` they were asked for.
+
+    Arrays of one length, from far to near in every row; ``phase`` in degrees.
+    """
+
+    row: np.ndarray
+    amplitude: np.ndarray
+    approach: np.ndarray
+    phase: np.ndarray
+    stable: np.ndarray
+
+    @property
+    def branch(self) -> list[str]:
+        """Branch of each: stable ones by the sign of the mean pull on the lever, that is, phase."""
+        attractive, unstable, repulsive = BRANCHES
+        kinds = np.where(self.phase > 90, attractive, repulsive)
+        return np.where(self.stable, kinds, unstable).tolist()
+
+
+class AmplitudeCurve:
+    """The solutions of the amplitude equation over a map of taps.
+
+    Parameters
+    ----------
+    taps
+        A ``TapMap`` that has been explored.
+    drive
+        The ``softafm.oscillator.Drive`` of the lever.
+    """
+
+    def __init__(self, taps, drive):
+        self._taps, self._drive = taps, drive
+
+    def at_amplitudes(self, amplitudes) -> Solutions:
+        """All solutions of given amplitudes, m, shape (n,)."""
+        approaches = np.linspace(self._taps.farthest, self._taps.nearest, _APPROACHES)
+        row, approach = _zeros(lambda a, d: self._excess(a, d), amplitudes, approaches)
+        return self._solutions(row, amplitudes[row], approach)
+
+    def at_heights(self, heights) -> Solutions:
+        """All solutions at given mean heights, m, shape (n,), within the amplitudes of the map."""
+        span = 1e-3 * (self._taps.highest - self._taps.lowest)
+        amplitudes = np.linspace(self._taps.lowest - span, self._taps.highest + span, _AMPLITUDES)
+        row, amplitude = _zeros(lambda z, a: self._excess(a, z - a), heights, amplitudes)
+        return self._solutions(row, amplitude, heights[row] - amplitude)
+
+    def observables(self, solutions: Solutions) -> np.ndarray:
+        """Observables of solutions, shape (7, n)."""
+        return self._taps.observables(solutions.amplitude, solutions.approach)
+
+    def swept(self, heights):
+        """Amplitude (n,), phase and observables (7, n) at heights passed one after the other, m.
+
+        The lever keeps to its branch while that attracts, and then jumps to the nearest amplitude
+        that does. NaN where there is none.
+        """
+        found = self.at_heights(heights)
+        taken, last = np.full(heights.size, -1), None
+        for i in range(heights.size):
+            choices = np.flatnonzero((found.row == i) & found.stable)
+            if choices.size:
+                wanted = found.amplitude[choices].max() if last is None else last
+                taken[i] = choices[np.argmin(np.abs(found.amplitude[choices] - wanted))]
+                last = found.amplitude[taken[i]]
+        columns = np.vstack([found.amplitude, found.phase, self.observables(found)])
+        values = np.full((columns.shape[0], heights.size), np.nan)
+        values[:, taken >= 0] = columns[:, taken[taken >= 0]]
+        return values[0], values[1], values[2:]
+
+    def _excess(self, amplitude, approach):
+        values = self._taps.virial_and_dissipation(amplitude, approach)
+        return self._drive.excess(amplitude, *values)
+
+    def _solutions(self, row, amplitude, approach) -> Solutions:
+        """Phase and stability; the slopes are those at fixed height, where d falls as A rises."""
+        step = 1e-3 * np.minimum(amplitude, self._taps.unit)
+        more, less = (
+            self._taps.virial_and_dissipation(amplitude + s, approach - s) for s in (step, -step)
+        )
+        values = self._taps.virial_and_dissipation(amplitude, approach)
+        stable = self._drive.stable(amplitude, *values, *(more - less) / (2 * step))
+        return Solutions(row, amplitude, approach, self._drive.phase(amplitude, *values), stable)
+
+
+def _zeros(function, rows, points):
+    """Zeros of function(row, point) between neighbours of ``points``, for every row at once.
+
+    Returns the indices of the rows and the zeros, found by bisection; values of NaN have none.
+    """
+    values = function(rows[:, None], points[None, :])
+    row, column = np.nonzero(values[:, :-1] * values[:, 1:] < 0)
+    low, high, before = points[column], points[column + 1], np.sign(values[row, column])
+    for _ in range(30):
+        middle = (low + high) / 2
+        first = np.sign(function(rows[row], middle)) == before
+        low, high = np.where(first, middle, low), np.where(first, high, middle)
+    return row, (low + high) / 2
