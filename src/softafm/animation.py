@@ -67,8 +67,8 @@ def animate(
     seconds
         Duration of the movie, s.
     start, stop
-        Times of the run to begin and end at, s; by default where force or surface move, of
-        several taps in the last.
+        Times of the run to begin and end at, s; by default while force acts and the surface
+        returns, of several taps in the last.
     overwrite
         Whether an existing file is replaced.
     progress

@@ -70,8 +70,9 @@ def window(
 ) -> tuple[float, float]:
     """Return the stretch of time to show, s.
 
-    By default that in which force or surface move, from a two hundredth to all but a two hundredth
-    of their whole way, with a margin on both sides. Of several taps it is the last.
+    By default while a force acts, at least a hundredth of the largest, and then while the surface
+    returns, but no longer than the force acted; with a margin on both sides. Of several taps it is
+    the last.
 
     Raises
     ------
@@ -95,13 +96,17 @@ def window(
         )
     if start is None and stop is None and result.sizes.get("cycle", 1) > 1:
         low = last - (last - first) / result.sizes["cycle"]
-    force, surface = result["force"].values, result["deformation"].values
     inside = (time >= low) & (time <= high)
-    path = np.concatenate([[0.0], np.cumsum(changes(force[inside], surface[inside]))])
-    if path[-1] > 0:
-        begin, end = np.interp([0.005, 0.995], path / path[-1], time[inside])
-        low = low if start is not None else max(low, float(begin - margin * (end - begin)))
-        high = high if stop is not None else min(high, float(end + margin * (end - begin)))
+    time, force = time[inside], result["force"].values[inside]
+    strength = np.abs(force)
+    if strength.max(initial=0.0) > 0:
+        felt = time[strength >= 0.01 * strength.max()]
+        moves = np.cumsum(changes(force, result["deformation"].values[inside]))
+        rest = float(time[1:][moves >= 0.995 * moves[-1]][0]) if moves.size else felt[-1]
+        end = np.clip(rest, felt[-1], 2 * felt[-1] - felt[0])
+        around = margin * (end - felt[0])
+        low = low if start is not None else max(low, float(felt[0] - around))
+        high = high if stop is not None else min(high, float(end + around))
     return low, high
 
 

@@ -48,7 +48,7 @@ def plot_profiles(
     frames
         Number of pictures, 2 to 26.
     start, stop
-        Times to begin and end at, s; by default where force or surface move.
+        Times to begin and end at, s; by default while force acts and the surface returns.
 
     Returns
     -------

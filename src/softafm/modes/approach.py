@@ -108,7 +108,7 @@ def approach_curve(
                 report(1 - np.exp(-done / 80), f"{done} taps")
     curve = AmplitudeCurve(taps, drive)
     found = curve.at_amplitudes(ratios * free_amplitude)
-    warned = tuple(_warnings(tap, drive, tolerance, found))
+    warned = tuple(_warnings(taps, tap, drive, tolerance, found))
     for text in warned:
         warnings.warn(text, AccuracyWarning, stacklevel=2)
     data, coordinates = _tables(curve, ratios, found)
@@ -124,20 +124,21 @@ def approach_curve(
     )  # fmt: skip
 
 
-def _warnings(tap, drive, tolerance, found: Solutions):
+def _warnings(taps, tap, drive, tolerance, found: Solutions):
     """Tell of missing and surplus solutions, and run a few again to see whether they hold."""
     if found.amplitude.size == 0:
         yield "no height goes with any of the amplitudes: there is nothing to plot"
         return
     some = np.unique(np.linspace(0, found.amplitude.size - 1, _CHECKS).astype(int))
-    off = 0.0
     for amplitude, approach in zip(found.amplitude[some], found.approach[some], strict=True):
-        off = max(off, abs(float(drive.excess(amplitude, *tap(amplitude, approach)[:2]))))
-    if off > 2 * tolerance:
-        yield (
-            f"solutions balance the drive to {off:.2g} only, where {2 * tolerance:.2g} was asked "
-            "for: taps between those that were run are not smooth"
-        )
+        excess = float(drive.excess(amplitude, *tap(amplitude, approach)[:2]))
+        slope = taps.excess_slope(amplitude, approach)
+        off = abs(excess / slope)
+        if abs(excess) > 2 * tolerance and off > 0.1 * taps.unit:
+            yield (
+                f"the solution of amplitude {amplitude:.3g} m is off by about {off:.2g} m in "
+                "height: taps between those that were run are not smooth"
+            )
     labels = list(zip(found.row, found.branch, strict=True))
     for branch in ("attractive", "repulsive"):
         if any(labels.count((row, branch)) > 1 for row in set(found.row)):

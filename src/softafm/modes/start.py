@@ -22,7 +22,12 @@ def carry(contact, motion, solver, tolerance, profiles, progress, **options):
 
 
 def refuse_start_inside(contact, motion) -> None:
-    """Raise ValueError if the tip starts below the equilibrium gap, inside the surface."""
+    """Raise ValueError if the tip starts below the equilibrium gap, inside the surface.
+
+    A steady oscillation may: there the start is forgotten.
+    """
+    if getattr(motion, "steady", False):
+        return
     start = float(motion.height(motion.breaks[0]))
     gap = contact.surface.equilibrium_gap
     if start <= gap:

@@ -67,6 +67,15 @@ class TapMap:
         """All ``OBSERVABLES`` at amplitudes and closest approaches, m: shape (7, *broadcast)."""
         return self._combine(self._all, amplitude, approach)
 
+    def excess_slope(self, amplitude: float, approach: float) -> float:
+        """Slope of the excess along d, 1/m."""
+        step = 1e-2 * self.unit
+        far, near = (
+            self._excess(amplitude, *self.virial_and_dissipation(amplitude, approach + s))
+            for s in (step, -step)
+        )
+        return float(far - near) / (2 * step)
+
     def _combine(self, interpolants, amplitude, approach):
         """Lagrange's polynomial in ln A through the lines, times √A."""
         amplitude, approach = np.broadcast_arrays(amplitude, approach)
@@ -106,13 +115,12 @@ class TapMap:
         """Approach beyond which every line needs more than the drive, and ever more."""
         deep = -2 * self.unit
         for line in range(self._logs.size):
-            lowest_possible = -1.8 * np.exp(self._logs[line])
-            while deep > max(-_DEEPEST * self.unit, lowest_possible):
+            while deep > -_DEEPEST * self.unit:
                 sample = self._sample(line, deep)
                 if sample[0] < 0 and self._excess_at(line, sample) > 0.1:
                     break
                 deep *= 1.5
-        return float(max(deep, -1.8 * np.exp(self._logs[0])))
+        return deep
 
     def _interpolant(self, line: int, which: slice = slice(None)):
         from scipy.interpolate import PchipInterpolator

@@ -57,6 +57,11 @@ class Run:
         """Run, yielding the fraction of the motion done at every return of the compiled loop."""
         surface = self.surface
         self._keep(surface.settle()[None], surface.fields[k.DEFORMATION][None])
+        if surface.clock[k.FORCE] >= self._trigger(-np.inf):
+            raise ValueError(
+                f"setpoint_force = {self.motion.setpoint_force:g} N: must be above the force at "
+                f"the start, {surface.clock[k.FORCE]:.3g} N"
+            )
         first = surface.time
         while (stop := self._next_stop()) is not None:
             if surface.time in self.motion.breaks:

@@ -52,7 +52,9 @@ class Surface:
         self.fields = np.zeros((k.MEMORY + modes, self.mesh.nodes.size))
         self.clock = np.zeros(k.CLOCK_SIZE)
         self.clock[k.TIME] = motion.breaks[0]
-        self.clock[k.FRAME] = self.open_frame
+        start = float(motion.height(motion.breaks[0]))
+        self.start_frame = k.frame_for(contact.contact_radius(start), self.open_frame)
+        self.clock[k.FRAME] = self.start_frame
         self.background = k.Background(np.empty((0, 0)), 1.0, 1.0, 1.0, 1.0, 0.0)
         work = contact.surface.work_of_adhesion
         self.clock[k.FORCE_SCALE] = 0.2 * np.pi * contact.tip.radius * work
@@ -87,8 +89,8 @@ class Surface:
 
         Shape (modes, n). Whoever goes on has to ``remember`` and to ``settle``.
         """
-        self._move_to(min(_FIRST_LEVEL, self.finest_level), self.open_frame / self.clock[k.FRAME])
-        self.clock[k.FRAME] = self.open_frame
+        self._move_to(min(_FIRST_LEVEL, self.finest_level), self.start_frame / self.clock[k.FRAME])
+        self.clock[k.FRAME] = self.start_frame
         self.clock[k.TIME] = time
         gained = self.fields[k.MEMORY :].copy()
         self.fields[k.MEMORY :] = 0
@@ -98,7 +100,7 @@ class Surface:
         """Take ``memory``, as ``rewind`` returned it, for that of all that was before now."""
         mesh = self.mesh
         self.background = k.Background(
-            memory, self.open_frame, mesh.nodes[-1], mesh.edge_spacing, mesh.growth, self.time
+            memory, self.start_frame, mesh.nodes[-1], mesh.edge_spacing, mesh.growth, self.time
         )
 
     def memory(self) -> np.ndarray:
@@ -133,7 +135,12 @@ class Surface:
         memory = self.memory()
         instantaneous, modes = self.parameters.compliance[0], self.parameters.compliance[1:]
         v = -modes @ memory
-        unknowns = np.append(self.fields[k.DEFORMATION], clock[k.DEFLECTION])
+        standoff = base + clock[k.DEFLECTION] + tip
+        shape = self.fields[k.DEFORMATION]
+        # A tip that starts inside the surface pushes it away.
+        pierced = standoff - shape < 0.3 * self.gap_of_tension
+        shape = np.where(pierced, standoff - self.gap_of_tension, shape)
+        unknowns = np.append(shape, clock[k.DEFLECTION])
         lever = self.parameters.lever[0] / (2 * np.pi * frame**2)
         iterations = k.settle(
             unknowns, v, frame * instantaneous, base + tip, lever, mesh.nodes[-1] ** 2 / 2 / tip[-1],
