@@ -1,6 +1,6 @@
 """What the scripts of the paper's study share: its samples, runs that may fail, tables and figures.
 
-Rajabifar, Wagner and Raman 2021 is "the paper"; its setups A to G are those of its Table 2.
+Rajabifar et al. 2021 is "the paper"; its setups A to G are those of its Table 2.
 """
 
 import csv
@@ -16,6 +16,7 @@ import numpy as np
 import rich
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
+from PIL import Image
 from rich.box import SIMPLE_HEAD
 from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
 from rich.table import Table
@@ -234,8 +235,11 @@ def write_csv(name: str, header: Iterable[str], rows: Iterable[Iterable]) -> Pat
 
 
 def save_figure(figure: Figure, name: str) -> Path:
-    """Write a figure to the output folder."""
+    """Write a figure, in 64 colours, to the output folder."""
     OUTPUT.mkdir(exist_ok=True)
     path = OUTPUT / f"{name}.png"
     figure.savefig(path, dpi=120, bbox_inches="tight")
+    with Image.open(path) as picture:
+        small = picture.convert("RGB").quantize(64)
+    small.save(path, optimize=True)
     return path

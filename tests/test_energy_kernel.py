@@ -395,14 +395,16 @@ def test_steps_equal_those_of_a_plain_newton_method():
         newton=1e-11, slack=2.0, finest=0.0, coarsest=np.inf, most_tries=1e6, trigger=np.inf,
     )  # fmt: skip
     n, modes = MESH.nodes.size, retardation.size
+    past = 0.2 / np.array([[3e-9], [1e-9]]) * np.array([[Z0], [-Z0]]) / (1 + MESH.nodes**2)
+    background = k.Background(past, FRAME, MESH.nodes[-1], MESH.edge_spacing, MESH.growth, -1e-7)
     fields, clock = np.zeros((k.MEMORY + modes, n)), np.zeros(k.CLOCK_SIZE)
     clock[k.STEP], clock[k.HISTORY] = step, 1
     clock[k.FRAME] = clock[k.FRAME_EARLIER] = clock[k.FRAME_EARLIEST] = FRAME
     clock[k.AXIS_GAP] = motion.height(0.0)
     records, shapes = np.zeros((count + 1, k.RECORD_WIDTH)), np.zeros((count + 1, n))
     outcome = k.advance(
-        height, profile, PRESSURE, POTENTIAL, parameters, MESH, controls, fields, clock, records,
-        shapes,
+        height, profile, PRESSURE, POTENTIAL, parameters, background, MESH, controls, fields, clock,
+        records, shapes,
     )  # fmt: skip
     assert outcome == k.FULL
     assert records[0, 0] == count + 1
@@ -423,14 +425,15 @@ def test_steps_equal_those_of_a_plain_newton_method():
             if number > 1:
                 known[m] += weights[0] * p_before
         c = compliance[0] + compliance[1:] @ share
-        v = -K @ (compliance[1:] @ known)
+        faded = past * np.exp(-(number * step + 1e-7) / retardation)[:, None]
+        v = -K @ (compliance[1:] @ known) - compliance[1:] @ faded
         for _ in range(30):
             gap = standoff - u
             residual = u - v + c * K @ LAW.pressure(gap)
             u = u - np.linalg.solve(np.eye(n) - c * K * slope(gap), residual)
         p_before, p = p, LAW.pressure(standoff - u)
         w = known + share[:, None] * p
-        lag = p - w
+        lag = p - w - np.linalg.solve(K, faded.T).T
         loss = (
             2
             * np.pi

@@ -94,9 +94,9 @@ class _Run:
             np.array(creep.retardation_times, float),
         )
         self.gap_of_tension = contact.surface.gap_of_largest_tension
-        self.largest_pressure = _largest_pressure(
-            contact, *self.setup.rim, self.setup.shapes.shape[0]
-        )
+        rim, profile = self.setup.rim
+        unknowns = self.setup.shapes.shape[0]
+        self.largest_pressure = _largest_pressure(contact, rim, profile, unknowns)
         self.iteration = iteration
         self.pieces = list(_pieces(motion, solver.steps))
         modes = creep.retardation_times.size
@@ -105,7 +105,7 @@ class _Run:
         self.state = np.zeros((rows, equations))
         self.state[0, : discretisation.flat.size] = discretisation.flat
         self.past = np.zeros((max(2, solver.stepper.weights.size), rows, equations))
-        self.work = _workspace(rows, modes, equations, nodes, self.setup.shapes.shape[0])
+        self.work = _workspace(rows, modes, equations, nodes, unknowns)
         total = 1 + sum(piece.time.size - 1 for piece in self.pieces)
         self.records = np.empty((total, k.RECORD_WIDTH))
         self.shapes = np.empty((total if keep_shapes else 0, nodes))
