@@ -1,5 +1,6 @@
 """The paper's solvers, setups A to G, against plain twins written from its equations."""
 
+import dataclasses
 import warnings
 from itertools import pairwise
 
@@ -548,3 +549,56 @@ def test_bad_options_are_refused_in_one_line(make, line):
     with pytest.raises(ValueError, match="^" + line.replace("(", r"\(")) as caught:
         make()
     assert "\n" not in str(caught.value)
+
+
+# Levers and steady cycles
+
+
+@pytest.mark.parametrize("solver", FIXED_STEPS)
+def test_a_lever_bends_as_with_the_default_solver(solver):
+    """A stiff lever, so that nothing snaps: the two have no step, mesh or iteration in common."""
+    contact = sa.Contact(
+        SMOOTH_TAP.tip, sa.StandardLinearSolid(2.5e9, 0.3e9, 1e-5, 0.45), SMOOTH_TAP.surface
+    )
+    motion, lever = sa.Triangle(10e-9, -4e-9, 1e-3), sa.Cantilever(100.0)
+    longer = dataclasses.replace(solver, steps=8000, nodes=60, domain=16e-9)
+    found = sa.force_spectroscopy(contact, lever, motion, solver=longer)
+    expected = sa.force_spectroscopy(contact, lever, motion, tolerance=1e-3)
+    for name in ("force_max", "force_min", "force_min_approach", "loop_energy"):
+        assert float(found[name]) == pytest.approx(float(expected[name]), rel=0.02), name
+    unbalanced = lever.stiffness * found.deflection - found.force
+    assert float(np.abs(unbalanced).max()) < 2e-3 * float(found.force_max)
+
+
+def test_a_very_stiff_lever_is_none():
+    solver = FIXED_STEPS[3]
+    bent = sa.force_spectroscopy(CONTACT, sa.Cantilever(1e6), RAMP, solver=solver)
+    still = sa.force_distance(CONTACT, RAMP, solver=solver)
+    scale = float(np.abs(still.force).max())
+    assert np.allclose(bent.force, still.force, rtol=0, atol=2e-3 * scale)
+
+
+@pytest.mark.parametrize("solver", FIXED_STEPS[1:])
+def test_steady_cycles_agree_with_the_default_solver(solver):
+    slow = sa.StandardLinearSolid(2.5e9, 0.3e9, 4e-6, 0.45)
+    contact = sa.Contact(SMOOTH_TAP.tip, slow, SMOOTH_TAP.surface)
+    solver = dataclasses.replace(solver, steps=4000, nodes=50, domain=20e-9)
+    found = sa.tapping_cycle(contact, *SMOOTH, "steady", solver=solver)
+    expected = sa.tapping_cycle(contact, *SMOOTH, "steady", tolerance=1e-3)
+    assert 2 < int(found.cycles_run) < 20
+    for name in ("virial", "dissipation", "force_max", "force_min"):
+        assert float(found[name]) == pytest.approx(float(expected[name]), rel=0.03), name
+
+
+def test_cycles_that_do_not_settle_are_warned_of():
+    slow = sa.StandardLinearSolid(2.5e9, 0.3e9, 4e-3, 0.45)
+    contact = sa.Contact(SMOOTH_TAP.tip, slow, SMOOTH_TAP.surface)
+    solver = solvers.EnhancedAttard(6, 16, steps=1500)
+    with pytest.warns(sa.AccuracyWarning, match="no steady cycle after 100"):
+        sa.tapping_cycle(contact, *SMOOTH, solver=solver)
+
+
+def test_a_force_trigger_is_refused():
+    motion = sa.Triangle(1.5e-9, -0.6e-9, 1e-5, setpoint_force=1e-9)
+    with pytest.raises(ValueError, match=r"^setpoint_force = 1e-09 N: the solver 'attard' must"):
+        sa.force_distance(CONTACT, motion, solver=solvers.Attard())

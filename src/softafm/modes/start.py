@@ -38,16 +38,9 @@ def refuse_start_inside(contact, motion) -> None:
 
 
 def refuse_unable(solver, motion, lever=None) -> None:
-    """Raise ValueError if a solver of fixed steps is to bend a lever, or to turn at a force.
-
-    ``lever`` is anything but None where one carries the tip.
-    """
+    """Raise ValueError if a solver of fixed steps is to turn at a force."""
     if solver is None or solver.adaptive:
         return
-    if lever is not None:
-        raise ValueError(
-            f"solver = '{solver.kind}': moves the tip itself, not a cantilever; must be 'energy'"
-        )
     force = getattr(motion, "setpoint_force", None)
     if force is not None:
         raise ValueError(

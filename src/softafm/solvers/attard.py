@@ -76,15 +76,21 @@ class Attard:
             raise ValueError(f"relaxation = {self.relaxation:g}: must be at most 1")
         whole("most_iterations", self.most_iterations, 1, 1_000_000_000)
 
-    def solve(self, contact, motion, *, tolerance=1e-2, profiles=False, progress=None) -> History:
+    def solve(
+        self, contact, motion, *, stiffness=None, tolerance=1e-2, profiles=False, progress=None
+    ) -> History:
         """Carry the contact, flat and relaxed at first, through the motion.
 
         Parameters
         ----------
         contact, motion
             ``softafm.Contact`` and a motion, e.g. ``softafm.Triangle``.
+        stiffness
+            Stiffness of a lever that carries the tip and whose base moves so, N/m; None moves the
+            tip itself.
         tolerance
-            Without influence.
+            How close to periodic a steady motion has to be, in gaps of largest tension; otherwise
+            without influence.
         profiles
             Keep the surface shapes.
         progress
@@ -127,7 +133,8 @@ class Attard:
         )
         return march(
             Discretisation(setup, np.zeros(self.nodes)), contact, motion, self,
-            iteration=iteration, profiles=profiles, progress=progress,
+            stiffness=stiffness, tolerance=tolerance, iteration=iteration, profiles=profiles,
+            progress=progress,
         )  # fmt: skip
 
     def expected_seconds(self, contact, motion) -> float:

@@ -86,15 +86,21 @@ class EnhancedAttard:
         whole("steps", self.steps, 1, 100_000_000)
         stepper_of(self.stepper)
 
-    def solve(self, contact, motion, *, tolerance=1e-2, profiles=False, progress=None) -> History:
+    def solve(
+        self, contact, motion, *, stiffness=None, tolerance=1e-2, profiles=False, progress=None
+    ) -> History:
         """Carry the contact, flat and relaxed at first, through the motion.
 
         Parameters
         ----------
         contact, motion
             ``softafm.Contact`` and a motion, e.g. ``softafm.Triangle``.
+        stiffness
+            Stiffness of a lever that carries the tip and whose base moves so, N/m; None moves the
+            tip itself.
         tolerance
-            Without influence.
+            How close to periodic a steady motion has to be, in gaps of largest tension; otherwise
+            without influence.
         profiles
             Keep the surface shapes.
         progress
@@ -110,7 +116,10 @@ class EnhancedAttard:
 
         domain = self.domain or default_domain(contact, motion)
         surface = self._discretise(contact.tip, domain, float(motion.height(motion.breaks[0])))
-        return march(surface, contact, motion, self, profiles=profiles, progress=progress)
+        return march(
+            surface, contact, motion, self, stiffness=stiffness, tolerance=tolerance,
+            profiles=profiles, progress=progress,
+        )  # fmt: skip
 
     def expected_seconds(self, contact, motion) -> float:
         """Order of magnitude of a run, s on one core, as measured."""

@@ -45,8 +45,8 @@ ITERATIVE, NODAL, LEAST_SQUARES, ORTHOGONAL = range(4)
 FINISHED, BLOWN_UP, NOT_CONVERGED = range(3)
 
 # Columns of a record.
-R_FORCE, R_EDGE, R_AXIS, R_LOSS = range(4)
-RECORD_WIDTH = 4
+R_HEIGHT, R_FORCE, R_EDGE, R_AXIS, R_LOSS = range(5)
+RECORD_WIDTH = 5
 
 # Entries of `counters`: instants reached in this piece of the motion, of these those with rates to
 # look back on, rates that were computed, iterations, and rates found beyond a fold.
@@ -86,7 +86,8 @@ class Material(NamedTuple):
 
 
 class Controls(NamedTuple):
-    """Step, s; Runge-Kutta steps throughout or not; weights of past rates; the iteration's limits.
+    """Step, s; Runge-Kutta steps throughout or not; weights of past rates; the iteration's limits;
+    the stiffness of the lever that carries the tip, N/m, 0 for a tip that is moved itself.
 
     ``relaxation`` 0 stands for the largest that is sure to converge in repulsion; a surface under
     more than ``largest_pressure`` has blown up.
@@ -100,6 +101,7 @@ class Controls(NamedTuple):
     most_iterations: int
     gap_of_tension: float
     largest_pressure: float
+    stiffness: float
 
 
 class Work(NamedTuple):
@@ -123,16 +125,44 @@ class Work(NamedTuple):
     normal: np.ndarray  # (N, N)
     trial: np.ndarray  # (rows, e)
     stages: np.ndarray  # (4, rows, e)
+    free: np.ndarray  # (rows, e)  rates under a tip that stands still
+    dragged: np.ndarray  # (rows, e)  rates under a tip that moves at unit speed
+    tip: np.ndarray  # (2,)  height of a tip on a lever, and its rate
+    past_tip: np.ndarray  # (rates,)  past rates of its height
     pivots: np.ndarray  # (e,) int
 
 
 SETUP = types.NamedTuple((int64, float64, float64, _M, _M, _V, _V, _V, _V, _V, _V, _V), Setup)
 MATERIAL = types.NamedUniTuple(_V, 3, Material)
 CONTROLS = types.NamedTuple(
-    (float64, boolean, _V, float64, float64, int64, float64, float64), Controls
+    (float64, boolean, _V, float64, float64, int64, float64, float64, float64), Controls
 )
 WORK = types.NamedTuple(
-    (_V, _V, _V, _V, _V, _V, _M, _M, _V, _V, _V, _V, _V, _M, _M, _M, _M, _CUBE, int64[::1]),
+    (
+        _V,
+        _V,
+        _V,
+        _V,
+        _V,
+        _V,
+        _M,
+        _M,
+        _V,
+        _V,
+        _V,
+        _V,
+        _V,
+        _M,
+        _M,
+        _M,
+        _M,
+        _CUBE,
+        _M,
+        _M,
+        _V,
+        _V,
+        int64[::1],
+    ),
     Work,
 )
 
@@ -177,11 +207,9 @@ def _iterate(setup, instantaneous, controls, speed, guess, work, counters):
             work.scratch[i] = instantaneous * abs(work.slope[i])
         multiply(setup.influence, work.scratch, work.solution)
         relaxation = 2.0 / (2.0 + work.solution.max())
-    for i in range(n):
-        work.slope[i] *= instantaneous
     for iteration in range(controls.most_iterations):
         for i in range(n):
-            work.scratch[i] = work.slope[i] * guess[i]
+            work.scratch[i] = instantaneous * work.slope[i] * guess[i]
         multiply(setup.influence, work.scratch, work.solution)
         largest, off = abs(speed), 0.0
         for i in range(n):
@@ -276,13 +304,11 @@ def rates(setup, material, controls, height, speed, state, out, work, counters):
     return FINISHED
 
 
-@njit(
-    (SETUP, pointer(POTENTIAL), MATERIAL, CONTROLS, float64, WORK, _V), cache=True, fastmath=_FAST
-)
-def note(setup, potential, material, controls, height, work, record):
-    """Write force, contact radius, axis deformation and viscous power of a surface with rates.
+@njit(float64(SETUP, pointer(POTENTIAL), MATERIAL, WORK), cache=True, fastmath=_FAST)
+def tip_force(setup, potential, material, work):
+    """Force on the tip as last observed, N.
 
-    The flat surface beyond the domain adds its share to the force as for a paraboloid, for which
+    The surface beyond the domain, level with its rim, adds its share as for a paraboloid, for which
     r dr = (r²/2g) dh and the integral of p is the potential Φ.
     """
     n = work.gap.size
@@ -290,9 +316,78 @@ def note(setup, potential, material, controls, height, work, record):
     for i in range(n):
         total += setup.area[i] * work.pressure[i]
     rim, profile = setup.rim[0], setup.rim[1]
-    work.scratch[0] = height + profile - work.displacement[n - 1]
+    work.scratch[0] = work.gap[n - 1] + profile - setup.profile[n - 1]
     potential(work.scratch, material.law, work.scratch, 1)
-    record[R_FORCE] = total + pi * rim * rim / profile * work.scratch[0]
+    return total + pi * rim * rim / profile * work.scratch[0]
+
+
+@njit(
+    int64(
+        SETUP, pointer(POTENTIAL), MATERIAL, CONTROLS, float64, float64, float64, _M, _M, WORK,
+        int64[::1],
+    ),
+    cache=True,
+    fastmath=_FAST,
+)  # fmt: skip
+def rates_under_base(
+    setup, potential, material, controls, height, base, base_speed, state, out, work, counters
+):
+    """Rates of a state under a tip that moves at ``base_speed``, or whose lever's base does.
+
+    Then ``work.tip[1]`` gets the speed of the tip, m/s. The rates of the surface are linear in the speed of the tip, u̇ = α + β ḣ0, so that with a base
+    that moves at Ż the derivative of k (h0 − Z) = F is one equation for ḣ0:
+
+        k (ḣ0 − Ż) = 2π ∫ p' (ḣ0 − u̇) r dr − (k (h0 − Z) − F)/10 dt,
+
+    where the last term takes back in ten steps what steps leave of k (h0 − Z) − F.
+    """
+    if controls.stiffness == 0.0:
+        return rates(setup, material, controls, height, base_speed, state, out, work, counters)
+    n = work.gap.size
+    outcome = rates(setup, material, controls, height, 0.0, state, work.free, work, counters)
+    if outcome != FINISHED:
+        return outcome
+    outcome = rates(setup, material, controls, height, 1.0, state, work.dragged, work, counters)
+    if outcome != FINISHED:
+        return outcome
+    resisting, driving = controls.stiffness, controls.stiffness * base_speed
+    for i in range(n):
+        alpha, beta = work.free[0, i], work.dragged[0, i] - work.free[0, i]
+        if setup.kind > NODAL:
+            alpha, beta = 0.0, setup.carried
+            for j in range(setup.shapes.shape[0]):
+                alpha += setup.sign * setup.shapes[j, i] * work.free[0, j]
+                change = work.dragged[0, j] - work.free[0, j]
+                beta += setup.sign * setup.shapes[j, i] * change
+        gradient = setup.area[i] * work.slope[i]
+        if i == n - 1:  # and the surface beyond, which moves with the rim
+            gradient -= pi * setup.rim[0] ** 2 / setup.rim[1] * work.pressure[i]
+        resisting -= gradient * (1.0 - beta)
+        driving -= gradient * alpha
+    if resisting < 0.0:
+        counters[BEYOND_FOLD] += 1
+    else:
+        left = controls.stiffness * (height - base) - tip_force(setup, potential, material, work)
+        driving -= left / (10.0 * controls.step)
+    speed = driving / resisting
+    work.tip[1] = speed
+    rows, width = state.shape
+    for row in range(rows):
+        for i in range(width):
+            change = work.dragged[row, i] - work.free[row, i]
+            out[row, i] = work.free[row, i] + speed * change
+    return FINISHED
+
+
+@njit(
+    (SETUP, pointer(POTENTIAL), MATERIAL, CONTROLS, float64, WORK, _V), cache=True, fastmath=_FAST
+)
+def note(setup, potential, material, controls, height, work, record):
+    """Write height, force, contact radius, axis deformation and viscous power of a surface with
+    rates."""
+    n = work.gap.size
+    record[R_HEIGHT] = height
+    record[R_FORCE] = tip_force(setup, potential, material, work)
     record[R_AXIS] = setup.axis[0] * work.displacement[0] + setup.axis[1] * work.displacement[1]
 
     edge = setup.radius[n - 1]
@@ -352,28 +447,32 @@ def march(
 ):  # fmt: skip
     """Step through a piece of the motion from instant ``counters[INSTANT]`` to before ``stop``.
 
-    ``heights`` and ``speeds`` hold h0 and ḣ0 at instants and midpoints. ``state`` (rows, e) is
-    advanced in place; ``past`` (rates, rows, e) is a ring of past rates. Row i of ``records`` and,
-    if there is one, of ``shapes`` takes instant i of the piece.
+    ``heights`` and ``speeds`` hold those of the tip, or of the base of its lever, at instants and
+    midpoints. ``state`` (rows, e) is advanced in place; ``past`` (rates, rows, e) is a ring of past
+    rates. Row i of ``records`` and, if there is one, of ``shapes`` takes instant i of the piece.
     """
     order = controls.weights.size
     ring = past.shape[0]
     rows, width = state.shape
     instants = heights.size // 2
+    lever = controls.stiffness > 0.0
+    tip, past_tip = work.tip, work.past_tip
     while counters[INSTANT] < stop:
         instant = counters[INSTANT]
-        height = heights[2 * instant]
+        height = tip[0] if lever else heights[2 * instant]
         if not observe(setup, law, material, controls, height, state, work):
             return BLOWN_UP
         filter_pressure(material, work)
         work.pressure_before[:] = work.pressure
         now = past[instant % ring]
         now[:] = past[(instant - 1) % ring]
-        outcome = rates(
-            setup, material, controls, height, speeds[2 * instant], state, now, work, counters
-        )
+        outcome = rates_under_base(
+            setup, potential, material, controls, height, heights[2 * instant],
+            speeds[2 * instant], state, now, work, counters,
+        )  # fmt: skip
         if outcome != FINISHED:
             return outcome
+        past_tip[instant % ring] = tip[1]
         note(setup, potential, material, controls, height, work, records[instant])
         if shapes.shape[0] > 0:
             shapes[instant] = work.displacement
@@ -386,6 +485,7 @@ def march(
         if controls.always_runge_kutta or counters[PAST] < order:
             stages = work.stages
             stages[0] = now
+            start, climb = tip[0], tip[1]
             for stage in range(1, 4):
                 part = 0.5 if stage < 3 else 1.0
                 for row in range(rows):
@@ -394,15 +494,18 @@ def march(
                             state[row, i] + part * controls.step * stages[stage - 1, row, i]
                         )
                 at = 2 * instant + (1 if stage < 3 else 2)
-                if not observe(setup, law, material, controls, heights[at], work.trial, work):
+                height = start + part * controls.step * tip[1] if lever else heights[at]
+                if not observe(setup, law, material, controls, height, work.trial, work):
                     return BLOWN_UP
                 stages[stage] = stages[stage - 1]
-                outcome = rates(
-                    setup, material, controls, heights[at], speeds[at],
+                outcome = rates_under_base(
+                    setup, potential, material, controls, height, heights[at], speeds[at],
                     work.trial, stages[stage], work, counters,
                 )  # fmt: skip
                 if outcome != FINISHED:
                     return outcome
+                climb += 2.0 * tip[1] if stage < 3 else tip[1]
+            tip[0] = start + controls.step / 6.0 * climb
             for row in range(rows):
                 for i in range(width):
                     state[row, i] += (controls.step / 6.0) * (
@@ -414,6 +517,7 @@ def march(
             for back in range(order):
                 weight = controls.step * controls.weights[back]
                 rate = past[(instant - back) % ring]
+                tip[0] += weight * past_tip[(instant - back) % ring]
                 for row in range(rows):
                     for i in range(width):
                         state[row, i] += weight * rate[row, i]

@@ -13,6 +13,7 @@ from softafm.solvers import explicit_kernel as k
 from softafm.solvers.history import History, Profiles
 
 _CHUNK = 500
+_MOST_CYCLES = 100
 
 
 class Discretisation(NamedTuple):
@@ -59,11 +60,16 @@ def march(
     motion,
     solver,
     *,
+    stiffness: float | None = None,
+    tolerance: float = 1e-2,
     iteration: Iteration | None = None,
     profiles: bool = False,
     progress: Callable[[float, str], None] | None = None,
 ) -> History:
     """Carry a surface, flat and relaxed at first, through the motion in ``solver.steps`` steps.
+
+    With ``stiffness``, N/m, the motion is that of the base of a lever that carries the tip. A
+    steady motion is repeated until the surface returns to within ``tolerance``.
 
     Raises
     ------
@@ -71,8 +77,16 @@ def march(
         If the tip runs into the surface, a number overflows or an iteration does not converge.
     """
     started = perf_counter()
-    run = _Run(discretisation, contact, motion, solver, iteration or Iteration(), profiles)
-    for fraction in run.steps():
+    run = _Run(
+        discretisation,
+        contact,
+        motion,
+        solver,
+        stiffness or 0.0,
+        iteration or Iteration(),
+        profiles,
+    )
+    for fraction in run.cycles(tolerance) if getattr(motion, "steady", False) else run.steps():
         if progress is not None:
             progress(fraction, f"{fraction:.0%} of the motion")
     history = run.history(perf_counter() - started)
@@ -84,8 +98,9 @@ def march(
 class _Run:
     """Carries a discretised surface through a motion and keeps what happens."""
 
-    def __init__(self, discretisation, contact, motion, solver, iteration, keep_shapes):
+    def __init__(self, discretisation, contact, motion, solver, stiffness, iteration, keep_shapes):
         self.setup, self.solver, self.motion = discretisation.setup, solver, motion
+        self.stiffness = stiffness
         self.law, self.potential, law_parameters = contact.surface.compiled_pressure
         creep = contact.sample.reduced_compliance
         self.material = k.Material(
@@ -105,12 +120,31 @@ class _Run:
         self.state = np.zeros((rows, equations))
         self.state[0, : discretisation.flat.size] = discretisation.flat
         self.past = np.zeros((max(2, solver.stepper.weights.size), rows, equations))
-        self.work = _workspace(rows, modes, equations, nodes, unknowns)
+        self.work = _workspace(self.past.shape, modes, nodes, unknowns)
+        self.work.tip[0] = motion.height(motion.breaks[0])
         total = 1 + sum(piece.time.size - 1 for piece in self.pieces)
         self.records = np.empty((total, k.RECORD_WIDTH))
         self.shapes = np.empty((total if keep_shapes else 0, nodes))
         self.counters = np.zeros(k.COUNTERS, np.int64)
         self.done = 0
+        self.cycle, self.unsteady = 1, 0.0
+
+    def cycles(self, tolerance: float):
+        """Repeat the motion until the surface ends it as it began it; only the last is kept."""
+        period = self.motion.breaks[-1] - self.motion.breaks[0]
+        slowest = self.material.retardation.max(initial=0.0)
+        gained = -np.expm1(-period / slowest) if slowest else 1.0
+        for self.cycle in range(1, _MOST_CYCLES + 1):
+            before = self.state[0].copy()
+            self.done, self.work.step_before[0] = 0, 0.0
+            yield from self.steps()
+            change = self.state[0] - before
+            if self.setup.kind > k.NODAL:
+                unknowns = self.setup.shapes.shape[0]
+                change = change[:unknowns] @ self.setup.shapes
+            self.unsteady = float(np.abs(change).max()) / (gained * self.gap_of_tension)
+            if self.unsteady <= tolerance:
+                return
 
     def steps(self):
         """Run, yielding the fraction of the motion done after every few hundred steps."""
@@ -143,6 +177,7 @@ class _Run:
             most_iterations=self.iteration.most,
             gap_of_tension=self.gap_of_tension,
             largest_pressure=self.largest_pressure,
+            stiffness=self.stiffness,
         )
 
     def _give_up(self, outcome, piece):
@@ -167,7 +202,6 @@ class _Run:
     def history(self, seconds: float) -> History:
         """Collect what was recorded so far; ``seconds`` is the time the run took."""
         time = np.concatenate([*(p.time[:-1] for p in self.pieces), self.pieces[-1].time[-1:]])
-        heights = [*(p.heights[:-1:2] for p in self.pieces), self.pieces[-1].heights[-1:]]
         ends = np.cumsum([0] + [p.time.size - 1 for p in self.pieces])
         count = self.done
         records = self.records[:count]
@@ -175,7 +209,7 @@ class _Run:
         profiles = Profiles(nodes.copy(), self.shapes[:count]) if self.shapes.size else None
         return History(
             time=time[:count],
-            tip_height=np.concatenate(heights)[:count],
+            tip_height=records[:, k.R_HEIGHT],
             force=records[:, k.R_FORCE],
             contact_radius=records[:, k.R_EDGE],
             axis_deformation=records[:, k.R_AXIS],
@@ -193,6 +227,7 @@ class _Run:
                 "rates": int(self.counters[k.RATES]),
                 "iterations": int(self.counters[k.ITERATIONS]),
                 "rates_beyond_fold": int(self.counters[k.BEYOND_FOLD]),
+                "cycles": max(self.cycle, getattr(self.motion, "periods", 1)),
                 "wall_time": seconds,
             },
             warnings=tuple(self._warnings(records)),
@@ -205,6 +240,11 @@ class _Run:
                 f"the surface was beyond an elastic instability in {beyond} of "
                 f"{self.counters[k.RATES]} rates: steps of fixed length cross one by luck, and "
                 "forces and energies depend on their number. solvers.Energy() follows such jumps"
+            )
+        if self.cycle == _MOST_CYCLES:
+            yield (
+                f"no steady cycle after {self.cycle}: the surface still drifts by "
+                f"{self.unsteady:.2g} gaps of largest tension. solvers.Energy() looks ahead"
             )
         edge, domain = float(records[:, k.R_EDGE].max(initial=0.0)), float(self.setup.rim[0])
         if edge > 0.9 * domain:
@@ -244,7 +284,9 @@ def _pieces(motion, steps: int):
         )
 
 
-def _workspace(rows, modes, equations, nodes, unknowns) -> k.Work:
+def _workspace(past: tuple[int, int, int], modes: int, nodes: int, unknowns: int) -> k.Work:
+    """Return the arrays that a run with a ring of ``past`` rates keeps."""
+    rates, rows, equations = past
     sizes: dict[str, Any] = {
         "displacement": nodes, "gap": nodes, "pressure": nodes, "slope": nodes,
         "load": equations, "pull": equations, "creep": (modes, equations),
@@ -252,7 +294,8 @@ def _workspace(rows, modes, equations, nodes, unknowns) -> k.Work:
         "right": equations, "solution": equations, "scratch": nodes,
         "stiffened": (equations, nodes), "matrix": (unknowns, equations),
         "normal": (unknowns, unknowns), "trial": (rows, equations),
-        "stages": (4, rows, equations),
+        "stages": (4, rows, equations), "free": (rows, equations), "dragged": (rows, equations),
+        "tip": 2, "past_tip": rates,
     }  # fmt: skip
     arrays = {name: np.zeros(size) for name, size in sizes.items()}
     return k.Work(**arrays, pivots=np.zeros(equations, np.int64))
