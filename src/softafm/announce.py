@@ -6,12 +6,19 @@ from contextlib import contextmanager
 from threading import Timer
 
 
+_loaded: set[str] = set()
+
+
 @contextmanager
-def announced_compilation(patience: float = 3.0) -> Iterator[None]:
+def announced_compilation(solver: str, patience: float = 3.0) -> Iterator[None]:
     """Tell the user, on stderr, if what happens inside takes longer than ``patience`` seconds.
 
     Loading compiled code takes under a second; only a machine's first run waits for the compiler.
+    Nothing is watched once the code of a ``solver`` is there.
     """
+    if solver in _loaded:
+        yield
+        return
     notice = Timer(
         patience,
         print,
@@ -22,5 +29,6 @@ def announced_compilation(patience: float = 3.0) -> Iterator[None]:
     notice.start()
     try:
         yield
+        _loaded.add(solver)
     finally:
         notice.cancel()

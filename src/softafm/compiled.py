@@ -10,6 +10,7 @@ from typing import Any
 
 from numba import float64, int64, njit, types, void
 from numba.experimental.function_type import _get_wrapper_address
+from numba.extending import typeof_impl
 
 _ARRAY = float64[::1]
 _FAST = {"reassoc", "contract", "nsz", "arcp"}
@@ -31,7 +32,7 @@ class CompiledFunction(types.WrapperAddressProtocol):
     """A function compiled for one signature, to be called from Python or handed to a kernel.
 
     It is compiled, or loaded from the disk cache, at its first use, and its address is looked up
-    once: numba would do that at every call, at 0.1 ms each.
+    once, and so is its type: numba would do that at every call, at 0.1 ms each.
     """
 
     def __init__(self, function: Callable, signature: Any):
@@ -40,8 +41,7 @@ class CompiledFunction(types.WrapperAddressProtocol):
 
     @cached_property
     def _compiled(self):
-        fast = {"reassoc", "contract", "nsz", "arcp"}
-        return njit(self._signature, cache=True, fastmath=fast)(self._python)
+        return njit(self._signature, cache=True, fastmath=_FAST)(self._python)
 
     @cached_property
     def _address(self) -> int:
@@ -56,6 +56,16 @@ class CompiledFunction(types.WrapperAddressProtocol):
     def signature(self):
         """The numba signature it is compiled for."""
         return self._signature
+
+    @cached_property
+    def numba_type(self) -> types.FunctionType:
+        """The type that kernels know it by."""
+        return types.FunctionType(self._signature)
+
+
+@typeof_impl.register(CompiledFunction)
+def _type_of(function, context):
+    return function.numba_type
 
 
 def pointer(signature: Any) -> types.FunctionType:

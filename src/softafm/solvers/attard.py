@@ -101,7 +101,7 @@ class Attard:
         DivergedError
             If the surface blows up or an iteration does not converge.
         """
-        with announced_compilation():
+        with announced_compilation(self.kind):
             from softafm.solvers import explicit_kernel as k
             from softafm.solvers.explicit_run import (
                 Discretisation,

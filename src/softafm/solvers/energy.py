@@ -73,7 +73,7 @@ class Energy:
             If ``most_steps`` do not suffice or no stable shape is found.
         """
         started = perf_counter()
-        with announced_compilation():
+        with announced_compilation(self.kind):
             from softafm.solvers.energy_run import Run
 
             run = Run(self, contact, motion, stiffness or 0.0, tolerance, profiles)

@@ -111,7 +111,7 @@ class EnhancedAttard:
         DivergedError
             If the surface blows up.
         """
-        with announced_compilation():
+        with announced_compilation(self.kind):
             from softafm.solvers.explicit_run import default_domain, march
 
         domain = self.domain or default_domain(contact, motion)

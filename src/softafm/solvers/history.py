@@ -44,6 +44,7 @@ class History:
     profiles: Profiles | None = None
     diagnostics: dict[str, float] = field(default_factory=dict)
     warnings: tuple[str, ...] = ()
+    _quadratures: dict = field(default_factory=dict, init=False, repr=False, compare=False)
 
     def integrate(self, values, weight, start=-np.inf, stop=np.inf) -> float:
         """∫ values(t) weight(t) dt from ``start`` to ``stop`` (s).
@@ -53,15 +54,24 @@ class History:
         four points a step.
         """
         total = 0.0
-        for piece in self.pieces:
-            time = self.time[piece]
-            edges = np.unique(np.clip(time, start, stop))
-            if edges.size < 2:
-                continue
-            middle, half = (edges[1:] + edges[:-1]) / 2, np.diff(edges)[:, None] / 2
-            at = middle[:, None] + half * _POINTS
-            total += float(np.sum(cubic(time, values[piece], at) * weight(at) * _WEIGHTS * half))
+        for piece, at, lengths, near, basis in self._quadrature(start, stop):
+            interpolated = np.einsum("mpc,mc->mp", basis, values[piece][near])
+            total += float(np.sum(interpolated * weight(at) * lengths))
         return total
+
+    def _quadrature(self, start, stop) -> list[tuple]:
+        """Points and weights of every piece, and the cubics there: kept for the next integral."""
+        key = start, stop
+        if key not in self._quadratures:
+            rules = self._quadratures[key] = []
+            for piece in self.pieces:
+                time = self.time[piece]
+                edges = np.unique(np.clip(time, start, stop))
+                if edges.size > 1:
+                    middle, half = (edges[1:] + edges[:-1]) / 2, np.diff(edges)[:, None] / 2
+                    at = middle[:, None] + half * _POINTS
+                    rules.append((piece, at, half * _WEIGHTS, *cubics(time, at)))
+        return self._quadratures[key]
 
     def extreme(self, values, sign: int, start=-np.inf, stop=np.inf) -> float:
         """Largest (``sign`` 1) or smallest (-1) of ``values`` (n,) between two times (s).
@@ -89,21 +99,20 @@ class History:
         return sign * float(best)
 
 
-def cubic(time, values, at):
-    """Interpolate ``values`` (n,) at ``at`` (m, points), each row within one interval of ``time``.
+def cubics(time, at):
+    """Instants near ``at`` (m, points), each row within one interval of ``time`` (n,).
 
-    Lagrange's polynomial through the four nearest instants, or all if there are fewer.
+    Returns their indices (m, 4) and the values (m, points, 4) of Lagrange's polynomials through
+    them, of four instants, or all if there are fewer.
     """
     count = min(4, time.size)
     first = np.clip(np.searchsorted(time, at.mean(axis=1)) - 2, 0, time.size - count)
-    nodes = first[:, None] + np.arange(count)
-    offsets = [at - time[column, None] for column in nodes.T]
-    result = np.zeros(at.shape)
+    near = first[:, None] + np.arange(count)
+    offsets = at[:, :, None] - time[near][:, None, :]
+    basis = np.ones(offsets.shape)
     for j in range(count):
-        others = [other for other in range(count) if other != j]
-        scale = np.prod([time[nodes[:, j]] - time[nodes[:, other]] for other in others], axis=0)
-        basis = (values[nodes[:, j]] / scale)[:, None]
-        for other in others:
-            basis = basis * offsets[other]
-        result += basis
-    return result
+        for other in range(count):
+            if other != j:
+                apart = time[near[:, j]] - time[near[:, other]]
+                basis[:, :, j] *= offsets[:, :, other] / apart[:, None]
+    return near, basis
