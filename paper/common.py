@@ -99,6 +99,8 @@ class Outcome:
     warned: bool
     attributes: dict = field(default_factory=dict)
     """Attributes of the result, such as ``solver_steps``; none of a run that stopped."""
+    jump_time: np.ndarray = field(default_factory=lambda: np.empty(0))
+    jump_energy: np.ndarray = field(default_factory=lambda: np.empty(0))
 
     @property
     def completed(self) -> bool:
@@ -129,6 +131,7 @@ def attempt(run: Callable) -> Outcome:
     return Outcome(
         result["time"].values, result["tip_height"].values, result["force"].values,
         scalars, seconds, "completed", bool(caught), dict(result.attrs),
+        result["jump_time"].values, result["jump_energy"].values,
     )  # fmt: skip
 
 
@@ -146,6 +149,12 @@ def converged_tap(contact: sa.Contact, motion: sa.Sine) -> dict[str, float]:
 def force_curve(contact: sa.Contact, motion, solver=None, **options) -> Outcome:
     """One force-distance curve."""
     return attempt(lambda: sa.force_distance(contact, motion, solver=solver, **options))
+
+
+def spectrum(contact: sa.Contact, stiffness: float, motion, solver=None, **options) -> Outcome:
+    """One force curve with a lever."""
+    lever = sa.Cantilever(stiffness)
+    return attempt(lambda: sa.force_spectroscopy(contact, lever, motion, solver=solver, **options))
 
 
 def tracked(jobs: Iterable, progress: Callable | None, message: Callable) -> Iterator:
@@ -217,7 +226,8 @@ def zoom(ax, place: tuple, xlim: tuple, ylim: tuple) -> None:
     for line in ax.get_lines():
         copy = Line2D(*line.get_data())
         copy.update_from(line)
-        copy.set(transform=inset.transData, clip_path=inset.patch, markersize=6)
+        size = min(6, line.get_markersize())
+        copy.set(transform=inset.transData, clip_path=inset.patch, markersize=size)
         inset.add_line(copy)
     ax.indicate_inset_zoom(inset, edgecolor="0.6")
 

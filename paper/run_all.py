@@ -14,6 +14,9 @@ import fig4_stability
 import fig5_functions
 import fig6_force_curves
 import fig7_time
+import fig8_spectroscopy
+import fig9_approach
+import fig10_movie
 import fold_scatter
 import smooth_tap
 
@@ -24,6 +27,9 @@ if __name__ == "__main__":
         fig5_functions.main,
         fig6_force_curves.main,
         fig7_time.main,
+        fig8_spectroscopy.main,
+        fig9_approach.main,
+        fig10_movie.main,
         fold_scatter.main,
         smooth_tap.main,
     )

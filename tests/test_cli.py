@@ -128,6 +128,26 @@ def test_spectroscopy_is_run_plotted_and_exported(folder, softafm):
     assert {"base_height (m)", "deflection (m)"} < set(header.split(","))
 
 
+def test_an_approach_curve_is_run_plotted_and_exported(folder, softafm):
+    assert softafm("example", "ps-approach-curve")[0] == 0
+    run = ("run", "ps-approach-curve.toml", "--tolerance", "0.05", "--set", "motion.points=4")
+    assert "run.profiles = True: of no use" in refused(softafm(*run, "--profiles"))
+    code, out, err = softafm(*run)
+    assert (code, err) == (0, "")
+    assert re.search(r"repulsive +3 of 4 +amplitudes; 3\d° to \d+°, at most 4\.\d+ aJ", out)
+    assert re.search(r"jump on approach +10\.\d+ nm +10\.\d+ nm to 11\.\d+ nm, 13\d° to 6\d°", out)
+    assert re.search(r"jump on retract +13\.\d+ nm", out)
+    assert softafm("plot", "ps-approach-curve.nc")[0] == 0
+    assert (folder / "ps-approach-curve.png").read_bytes().startswith(b"\x89PNG")
+    assert "holds no surface shapes" in refused(
+        softafm("plot", "ps-approach-curve.nc", "--profiles")
+    )
+    assert softafm("export", "ps-approach-curve.nc", "--out", "sweep.csv")[0] == 0
+    lines = (folder / "sweep.csv").read_text(encoding="utf-8").splitlines()
+    header = next(line for line in lines if not line.startswith("#"))
+    assert header.startswith("sweep_height (m),approach_amplitude (m),approach_phase (degree),")
+
+
 def test_plot_draws_one_or_several(folder, softafm):
     softafm("run", "attard-triangle.toml", "--tolerance", "0.05")
     assert softafm("plot", "attard-triangle.nc")[0] == 0
@@ -189,6 +209,25 @@ def test_info_compares_the_lever_with_the_attraction(softafm, folder, stiffness,
     assert re.search(rf"steepest attraction +8\.211 N/m +undeformed; .*{words}", out)
     assert re.search(r"contact stiffness +2\.465 N/m", out)
     assert "lever unbent" in out
+
+
+def test_info_on_an_approach_curve(softafm, folder):
+    softafm("example", "ps-approach-curve")
+    code, out, err = softafm("info", "ps-approach-curve.toml")
+    assert (code, err) == (0, "")
+    assert re.search(r"lowest tip height +-467\.9 pm +of a tap: Hertz against the drive", out)
+    assert re.search(r"free amplitude +15 nm +driven at 1 of the resonance, Q = 429\.5", out)
+    assert re.search(r"force of the drive +981\.4 pN", out)  # k A0 / Q
+    assert re.search(r"largest dissipation +11\.56 aJ", out)  # π k A0² / 4Q
+    assert re.search(r"time of the tap +3\.597 µs", out)
+    assert re.search(r"creep time +100 ns +0\.028 of the tap: viscoelastic", out)
+    assert re.search(r"expected cost +seconds +some 130 taps; the edge crosses", out)
+    fixed = ("--set", "solver={name='attard', steps=100000}")
+    off = ("--set", "motion.drive_frequency=280kHz")
+    code, out, _ = softafm("info", "ps-approach-curve.toml", *fixed, *off)
+    assert code == 0
+    assert re.search(r"driven at 1\.007 of the resonance", out)
+    assert re.search(r"expected cost +minutes +some 130 taps; 100000 steps of 70 nodes", out)
 
 
 @pytest.mark.parametrize(

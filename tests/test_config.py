@@ -32,6 +32,12 @@ TRIANGLE = {"start": "10 nm", "turn": "-10 nm", "speed": "5 um/s"}
 CURVE = {**TAP, "mode": "force-distance", "motion": TRIANGLE}
 LEVER = {"stiffness": "28.1 N/m", "quality_factor": 430, "frequency": "278 kHz"}
 SPECTROSCOPY = {**CURVE, "mode": "force-spectroscopy", "cantilever": LEVER}
+SWEEP = {
+    **TAP,
+    "mode": "approach-curve",
+    "cantilever": LEVER,
+    "motion": {"free_amplitude": "15 nm", "first_ratio": 0.9, "last_ratio": 0.3, "points": 3},
+}
 KELVIN_VOIGT = {
     "model": "generalized-kelvin-voigt",
     "E0": "2 GPa",
@@ -121,7 +127,7 @@ def test_the_contracts_example_is_the_contracts_python(load):
         sample=sa.StandardLinearSolid(E0=2e9, E_inf=0.1e9, creep_time=1e-7, poisson=0.49),
         surface=sa.LennardJones(hamaker=1e-19, z0=0.25e-9),
     )
-    assert experiment.motion == sa.Sine(46e-9, 49.6e-9, 278e3, cycles=1)
+    assert experiment.motion == sa.Sine(46e-9, 49.6e-9, 278e3, cycles="steady")
     assert experiment.mode == "tapping-cycle"
     assert (experiment.tolerance, experiment.profiles, experiment.solver) == (1e-2, False, None)
 
@@ -132,8 +138,12 @@ def test_triangle_is_the_default_motion_of_a_force_curve(load):
 
 
 def test_a_force_curve_may_follow_a_sine(load):
-    motion = {"shape": "sine", **TAP["motion"], "cycles": 3}
-    assert load({**CURVE, "motion": motion}).motion == sa.Sine(46e-9, 49.6e-9, 278e3, 3)
+    motion = {"shape": "sine", **TAP["motion"]}
+    assert load({**CURVE, "motion": motion}).motion == sa.Sine(46e-9, 49.6e-9, 278e3, 1)
+    for cycles in (3, "steady"):
+        for document in ({**CURVE, "motion": motion}, TAP):
+            experiment = load(changed(document, "motion.cycles", cycles))
+            assert experiment.motion == sa.Sine(46e-9, 49.6e-9, 278e3, cycles)
 
 
 WAVE = {"mean_height": "-10 nm", "amplitude": "50 nm", "frequency": "1 Hz"}
@@ -165,6 +175,21 @@ def test_spectroscopy_takes_every_motion_of_the_base(load):
     assert load({**SPECTROSCOPY, "motion": sine}).motion == sa.Sine(46e-9, 49.6e-9, 278e3)
     motion = measured(load, b"time (s),height (nm)\n0,10\n1,-2\n")["motion"]
     assert load({**SPECTROSCOPY, "motion": motion}).motion == sa.Trajectory([0, 1], [1e-8, -2e-9])
+
+
+def test_an_approach_curve_takes_even_or_listed_ratios(load):
+    experiment = load(SWEEP)
+    assert experiment.cantilever == sa.Cantilever(28.1, 430.0, 278e3)
+    assert experiment.motion.free_amplitude == 15e-9
+    assert experiment.motion.amplitude_ratio == pytest.approx((0.9, 0.6, 0.3), rel=1e-14)
+    assert experiment.motion.drive_frequency is None
+    motion = {"free_amplitude": "15 nm", "amplitude_ratio": [0.5, 0.9, 0.2]}
+    experiment = load({**SWEEP, "motion": {**motion, "drive_frequency": "270 kHz"}})
+    assert experiment.motion.amplitude_ratio == (0.5, 0.9, 0.2)
+    assert experiment.motion.drive_frequency == 270e3
+    assert load({**SWEEP, "motion": motion}, "motion.amplitude_ratio=[0.5]").motion
+    assert load(SWEEP, "motion.points=31").motion.amplitude_ratio[-1] == 0.3
+    assert load(SWEEP, "run.profiles=false", "solver.name=attard").solver == sa.solvers.Attard()
 
 
 @pytest.mark.parametrize(
@@ -316,11 +341,28 @@ def test_running_a_file_is_calling_the_function(load):
     np.testing.assert_array_equal(bent["deflection"], same["deflection"])
 
 
+def test_running_an_approach_curve_is_calling_the_function(load):
+    done = []
+    found = load(SWEEP, "run.tolerance=0.1", "motion.drive_frequency=277.9 kHz").run(
+        lambda fraction, message: done.append((fraction, message))
+    )
+    same = sa.approach_curve(
+        *(load(SWEEP).contact, sa.Cantilever(28.1, 430.0, 278e3), 15e-9, [0.9, 0.6, 0.3]),
+        drive_frequency=277.9e3,
+        tolerance=0.1,
+    )
+    assert found.attrs["mode"] == "approach-curve"
+    np.testing.assert_array_equal(found["mean_height"], same["mean_height"])
+    np.testing.assert_array_equal(found["retract_phase"], same["retract_phase"])
+    assert done
+    assert all(0 <= fraction <= 1 for fraction, _ in done)
+
+
 # Bundled examples
 
 
 def test_bundled_examples_load_and_say_what_they_are(load):
-    assert {"attard-triangle", "ldpe-spectroscopy", "ldpe-tapping"} <= set(example_names())
+    assert {"ldpe-spectroscopy", "ldpe-tapping", "ps-approach-curve"} <= set(example_names())
     for name in example_names():
         text = example_text(name)
         assert text.startswith("# ")
@@ -337,6 +379,18 @@ def test_ldpe_example_is_the_reference_case(load):
     result = load(example_text("ldpe-tapping")).run()
     assert float(result["virial"]) == pytest.approx(-3.4805e-17, rel=0.01)
     assert float(result["dissipation"]) == pytest.approx(8.7097e-17, rel=0.01)
+
+
+def test_polystyrene_example_is_the_papers_table(load):
+    experiment = load(example_text("ps-approach-curve"))
+    assert experiment.contact == sa.Contact(
+        tip=sa.Paraboloid(50e-9),
+        sample=sa.StandardLinearSolid(4.25e9, 1.89e9, 1e-7, 0.35),
+        surface=sa.LennardJones(2e-20, 0.15e-9),
+    )
+    assert experiment.cantilever == sa.Cantilever(28.1, 429.5, 278e3)
+    assert experiment.motion.free_amplitude == 15e-9
+    assert experiment.motion.amplitude_ratio == pytest.approx(np.linspace(0.95, 0.2, 31))
 
 
 def test_spectroscopy_example_is_the_papers_wave_and_the_reference_case(load):
@@ -506,11 +560,15 @@ def test_missing_and_malformed_tables(load, table):
         ("cantilever=1", "cantilever: of no use with mode = 'tapping-cycle'; leave it out, or use"),
         ("tip.shape=paraboloyd", "tip.shape = 'paraboloyd': did you mean 'paraboloid'?"),
         ("mode=tapping-cycel", "mode = 'tapping-cycel': did you mean 'tapping-cycle'?"),
-        ("mode=approach-curve", "mode = 'approach-curve': is not available in this version"),
-        ("mode=[1]", "mode = [1]: must be 'force-distance', 'force-spectroscopy' or 'tapping-cyc"),
+        ("mode=[1]", "mode = [1]: must be 'force-distance', 'force-spectroscopy', 'tapping-cycl"),
         ("motion.cycles=0", "motion.cycles = 0: must be a whole number from 1"),
         ("motion.cycles=1.5", "motion.cycles = 1.5: must be a whole number"),
-        ("motion.mean_height=-60 nm", "motion.mean_height = '-60 nm': start height = "),
+        ("motion.cycles=true", "motion.cycles = True: must be a whole number"),
+        ("motion.cycles='3'", "motion.cycles = '3': must be a whole number"),
+        (
+            "motion.cycles=stedy",
+            "motion.cycles = 'stedy': must be a whole number from 1 to 1000000, or 'steady'",
+        ),
         ("run.tolerance=0", "run.tolerance = 0: must be between"),
         ("run.tolerance=-1", "run.tolerance = -1: must be between"),
         ("run.profiles=1", "run.profiles = 1: must be true or false"),
@@ -523,6 +581,81 @@ def test_missing_and_malformed_tables(load, table):
 )
 def test_refusals_read_well(load, override, line):
     assert refusal(load, TAP, override).startswith(line)
+
+
+def test_only_a_counted_oscillation_must_start_outside_the_surface(load):
+    inside = "motion.mean_height=-60 nm"
+    line = refusal(load, TAP, inside, "motion.cycles=1")
+    assert line.startswith("motion.mean_height = '-60 nm': start height = ")
+    assert load(TAP, inside).motion.steady
+
+
+@pytest.mark.parametrize(
+    ("override", "line"),
+    [
+        ("motion.free_amplitude=15", "motion.free_amplitude = 15: must be a length with its unit"),
+        ("motion.free_amplitude=0 nm", "motion.free_amplitude = '0 nm': must be greater than 0"),
+        ("motion.first_ratio=1", "motion.first_ratio = 1: must be above 0 and below 1"),
+        ("motion.last_ratio=0", "motion.last_ratio = 0: must be above 0 and below 1"),
+        ("motion.last_ratio=20%", "motion.last_ratio = '20%': must be a plain number"),
+        ("motion.last_ratio=nan", "motion.last_ratio = nan: must be a finite number"),
+        ("motion.last_ratio=0.9", "motion.first_ratio = 0.9: must differ from last_ratio; for one"),
+        ("motion.points=1", "motion.points = 1: must be a whole number from 2 to 1000"),
+        ("motion.points=1001", "motion.points = 1001: must be a whole number from 2 to 1000"),
+        ("motion.points=3.0", "motion.points = 3.0: must be a whole number"),
+        ("motion.point=3", "motion.point: unknown key; did you mean 'points'?"),
+        ("motion.amplitude_ratio=[0.5]", "motion: give amplitude_ratio, or first_ratio, last_rati"),
+        ("motion.drive_frequency=1 nm", "motion.drive_frequency = '1 nm': must be a frequency"),
+        ("motion.drive_frequency=0 Hz", "motion.drive_frequency = '0 Hz': must be greater than 0"),
+        ("motion.mean_height=1 nm", "motion.mean_height: unknown key; must be 'free_amplitude', "),
+        ("motion.shape=triangle", "motion.shape = 'triangle': must be 'sine'"),
+        ("run.profiles=true", "run.profiles = True: of no use with mode = 'approach-curve', which"),
+        ("cantilever.frequency=0 Hz", "cantilever.frequency = '0 Hz': must be greater than 0"),
+    ],
+)
+def test_bad_approach_curves(load, override, line):
+    assert refusal(load, SWEEP, override).startswith(line)
+
+
+@pytest.mark.parametrize(
+    ("ratios", "line"),
+    [
+        ([], "amplitude_ratio = []: must be a list, in square brackets, with at least one entry"),
+        (0.5, "amplitude_ratio = 0.5: must be a list"),
+        ([0.5, 1.2], "amplitude_ratio[1] = 1.2: must be above 0 and below 1"),
+        ([-0.5, 0.2], "amplitude_ratio[0] = -0.5: must be above 0 and below 1"),
+        (["0.5"], "amplitude_ratio[0] = '0.5': must be a plain number"),
+        ([0.5] * 1001, "amplitude_ratio = [0.5, 0.5, "),
+    ],
+)
+def test_bad_lists_of_ratios(load, ratios, line):
+    motion = {"free_amplitude": "15 nm", "amplitude_ratio": ratios}
+    assert refusal(load, {**SWEEP, "motion": motion}).startswith(f"motion.{line}")
+
+
+@pytest.mark.parametrize(
+    ("key", "needs"),
+    [
+        ("stiffness", "a stiffness with its unit, such as '28 N/m'"),
+        ("quality_factor", "a number, such as 430"),
+        ("frequency", "a frequency with its unit, such as '278 kHz'"),
+    ],
+)
+def test_an_approach_curve_needs_the_whole_cantilever(load, key, needs):
+    line = refusal(load, changed(SWEEP, f"cantilever.{key}", None))
+    assert line == f"cantilever.{key}: missing; must be {needs}"
+    line = refusal(load, changed(SWEEP, "cantilever", None))
+    assert line == "cantilever: missing; add a table [cantilever]"
+
+
+@given(st.sampled_from(["free_amplitude", "first_ratio", "last_ratio", "points"]), anything)
+@few
+def test_garbage_in_approach_curves(load, key, value):
+    document = changed(SWEEP, f"motion.{key}", value)
+    with contextlib.suppress(ConfigError):
+        assert load(document).motion
+        return
+    assert refusal(load, document).startswith("motion.")
 
 
 WHOLE = "must be a whole number"
@@ -655,8 +788,6 @@ def test_bad_triangular_waves(load, motion, line):
         ("cantilever={}", "cantilever.stiffness: missing; must be a stiffness with its unit, such"),
         ("cantilever=28", "cantilever = 28: must be a table, [cantilever]"),
         ("mode=force-distance", "cantilever: of no use with mode = 'force-distance'; leave it out"),
-        ("mode=approach-curve", "mode = 'approach-curve': is not available in this version"),
-        ("solver.name=attard", "solver = 'attard': moves the tip itself, not a cantilever; must b"),
     ],
 )
 def test_bad_cantilevers(load, override, line):
@@ -676,6 +807,11 @@ def test_garbage_in_cantilevers(load, key, value):
         load(document)
     except ConfigError:
         assert refusal(load, document).startswith(f"cantilever.{key} = ")
+
+
+def test_the_papers_solvers_take_a_lever(load):
+    experiment = load(SPECTROSCOPY, "solver.name=attard")
+    assert (experiment.solver, experiment.cantilever.stiffness) == (sa.solvers.Attard(), 28.1)
 
 
 def test_fixed_steps_refuse_a_setpoint_of_force(load):

@@ -1,6 +1,7 @@
 """Figures: what their axes, legends and lines say, drawn with all floating-point errors raised."""
 
 import io
+import json
 
 import matplotlib
 import numpy as np
@@ -62,6 +63,31 @@ def tap(cycles=1, strength=4e-9, jump_time=()):
     height = 46e-9 + 49.6e-9 * np.cos(2 * np.pi * time / 3.6e-6)
     force = strength * (np.exp(-height / 2e-9) - 2 * np.exp(-height / 4e-9))
     return result("tapping-cycle", time, height, force, jump_time)
+
+
+def sweep(free=15e-9, jump=True):
+    """An approach curve that jumps between two straight branches at 9 nm down and at 11 nm up."""
+    height, ratio = np.linspace(14e-9, 4e-9, 101), np.linspace(0.9, 0.3, 7)
+    data = {}
+    for direction, edge in (("approach", 9e-9), ("retract", 11e-9)):
+        repulsive = height < (edge if jump else np.inf)
+        data[f"{direction}_amplitude"] = height * free / 15e-9 + np.where(repulsive, 5e-10, 0)
+        data[f"{direction}_phase"] = np.where(repulsive, 50, 120) + 1e9 * height
+        data[f"{direction}_dissipation"] = np.where(repulsive, 4e-18, 1e-18)
+        data[f"{direction}_virial"] = np.where(repulsive, -2e-18, 1e-18)
+    data = {name: ("sweep_height", values) for name, values in data.items()}
+    far, near = np.where(ratio > 0.5, ratio, np.nan), np.where(ratio < 0.85, ratio, np.nan)
+    both = np.array([far, far + near - ratio, near])
+    for name, value in (("mean_height", 1.4e-8), ("phase", 100), ("dissipation", 2e-18)):
+        data[name] = (("branch", "amplitude_ratio"), value * both)
+    data["virial"] = (("branch", "amplitude_ratio"), 1e-18 * both)
+    coords = {
+        "sweep_height": height,
+        "amplitude_ratio": ratio,
+        "branch": ["attractive", "unstable", "repulsive"],
+    }
+    experiment = json.dumps({"motion": {"free_amplitude": free}})
+    return xr.Dataset(data, coords, {"mode": "approach-curve", "experiment": experiment})
 
 
 def legend_texts(legend):
@@ -221,9 +247,79 @@ def test_a_run_without_any_force_is_drawn():
     figure.savefig(io.BytesIO(), format="png")
 
 
+def arrows(ax):
+    """Tail and head of each arrow."""
+    return [(note.xyann, note.xy) for note in ax.texts if note.arrow_patch is not None]
+
+
+def test_approach_curve_has_the_papers_panels_and_the_depth_of_the_tip():
+    figure = plot(sweep())
+    assert [ax.get_xlabel() for ax in figure.axes] == [
+        *["Amplitude ratio A/A₀"] * 3,
+        "Mean height of the tip, Z (nm)",
+    ]
+    assert [ax.get_ylabel() for ax in figure.axes] == [
+        "Phase lag (°)",
+        "Dissipation in a cycle (aJ)",
+        "Virial (aJ)",
+        "Lowest height of the tip, Z − A (pm)",
+    ]
+    assert legend_texts(figure.legends[0]) == [
+        *("approach", "retract", "stable solution", "unstable solution")
+    ]
+    phase = figure.axes[0]
+    assert 90 in [line.get_ydata()[0] for line in phase.lines if len(line.get_xdata()) == 2]
+    assert {"attractive", "repulsive"} <= {note.get_text() for note in phase.texts}
+
+
+def test_sweeps_are_broken_where_they_jump_and_arrows_show_the_way():
+    dataset = sweep()
+    phase, _, _, depth = plot(dataset).axes
+    down, up = [line for line in phase.lines if line.get_linestyle() in ("-", "--")][:2]
+    for line, direction in ((down, "approach"), (up, "retract")):
+        assert np.isnan(line.get_ydata()).sum() == 1
+        drawn = line.get_xdata()[~np.isnan(line.get_xdata())]
+        assert drawn == pytest.approx(dataset[f"{direction}_amplitude"].values / 15e-9)
+    assert (down.get_linestyle(), up.get_linestyle()) == ("-", "--")
+    (first, second) = arrows(phase)
+    assert (first[0][1], first[1][1]) == pytest.approx((129, 58.9))
+    assert (second[0][1], second[1][1]) == pytest.approx((60.9, 131))
+    (first, second) = arrows(depth)
+    assert (first[0], first[1]) == (pytest.approx((9.0, 0)), pytest.approx((8.9, -500)))
+    assert (second[0], second[1]) == (pytest.approx((10.9, -500)), pytest.approx((11.0, 0)))
+
+
+def test_solutions_are_dots_hollow_where_unstable():
+    dataset = sweep()
+    for ax in plot(dataset).axes[:3]:
+        stable, unstable = [line for line in ax.lines if line.get_marker() == "o"]
+        assert to_hex(unstable.get_markerfacecolor()) == "#ffffff"
+        assert to_hex(stable.get_markerfacecolor()) != "#ffffff"
+        assert np.isfinite(stable.get_ydata()).sum() == 4 + 6
+        assert np.isfinite(unstable.get_ydata()).sum() == 3
+
+
+def test_a_sweep_without_jumps_has_no_arrows():
+    assert not any(arrows(ax) for ax in plot(sweep(jump=False)).axes)
+
+
+def test_drives_overlaid_have_a_colour_each():
+    figure = plot([sweep(), sweep(20e-9)], ["weak", "strong"])
+    assert legend_texts(figure.legends[0])[:4] == ["weak", "strong", "approach", "retract"]
+    for ax in figure.axes:
+        lines = [line for line in ax.lines if len(line.get_xdata()) > 2]
+        assert len({to_hex(line.get_color()) for line in lines}) == 2
+
+
+def test_an_approach_curve_without_any_height_is_refused():
+    with pytest.raises(ValueError, match="nothing to draw"):
+        plot(sweep().isel(sweep_height=slice(0, 0)))
+
+
 @pytest.mark.parametrize(
     "datasets",
     [
+        [sweep()],
         [triangle(jump_time=[6e-3])] * 3,
         [tap(2, jump_time=[2e-6])],
         [spectroscopy(jump_time=[6e-3])] * 2,
@@ -254,5 +350,5 @@ def test_a_wrong_number_of_labels_is_refused():
     "datasets", [[triangle(), tap()], triangle().assign_attrs(mode="seismometer"), xr.Dataset()]
 )
 def test_modes_that_differ_or_have_no_figure_are_refused(datasets):
-    with pytest.raises(ValueError, match="must be force-distance, force-spectroscopy or tapping"):
+    with pytest.raises(ValueError, match=r"must be force-distance, .* or approach-curve, the"):
         plot(datasets)

@@ -37,6 +37,11 @@ def tap(**options):
     return sa.tapping_cycle(CONTACT, 10e-9, 10.5e-9, 278e3, 2, tolerance=2e-2, **options)
 
 
+def approach(**options):
+    lever = sa.Cantilever(28.1, quality_factor=430, frequency=278e3)
+    return sa.approach_curve(CONTACT, lever, 15e-9, [0.9, 0.5], tolerance=0.1, **options)
+
+
 def stepped(**options):
     solver = sa.solvers.EnhancedAttard(8, 30, steps=300, stepper=sa.solvers.AdamsBashforth(3))
     motion = sa.Triangle(4e-9, 1e-9, 1e-3)
@@ -59,10 +64,12 @@ def results():
         "sampled": sampled(),
         "stepped": stepped(),
         "spectroscopy": spectroscopy(),
+        "approach": approach(),
     }
 
 
-ALL = ["ramp", "ramp, profiles", "tap", "tap, profiles", "sampled", "stepped", "spectroscopy"]
+HISTORIES = ["ramp", "ramp, profiles", "tap", "tap, profiles", "sampled", "stepped", "spectroscopy"]
+ALL = [*HISTORIES, "approach"]
 
 
 @pytest.fixture
@@ -86,8 +93,9 @@ def test_everything_has_a_unit_and_a_name(results, name):
     for variable in results[name].variables.values():
         assert variable.attrs["units"]
         assert variable.attrs["long_name"]
-        assert variable.dtype == np.float64
-        assert np.all(np.isfinite(variable.values))
+        if name in HISTORIES:
+            assert variable.dtype == np.float64
+            assert np.all(np.isfinite(variable.values))
 
 
 def test_what_the_modes_promise(results):
@@ -111,6 +119,22 @@ def test_what_the_modes_promise(results):
     for field in ("deformation", "gap", "pressure"):
         assert shapes[field].dims == ("time", "r")
     assert np.all(np.diff(shapes["r"]) > 0)
+
+
+def test_what_an_approach_curve_promises(results):
+    found = results["approach"]
+    assert found["branch"].values.tolist() == ["attractive", "unstable", "repulsive"]
+    observables = {"phase", "virial", "dissipation", "force_mean", "force_max", "force_min"}
+    observables |= {"contact_time", "indentation"}
+    assert found["mean_height"].dims == ("branch", "amplitude_ratio")
+    for name in observables:
+        assert found[name].dims == ("branch", "amplitude_ratio")
+        for direction in ("approach", "retract"):
+            assert found[f"{direction}_{name}"].dims == ("sweep_height",)
+    missing = np.isnan(found["mean_height"])
+    assert 0 < missing.sum() < missing.size
+    assert all(np.array_equal(np.isnan(found[name]), missing) for name in observables)
+    assert found["retract_phase"].units == "degree"
 
 
 KINDS = {
@@ -192,6 +216,17 @@ def test_a_replayed_spectroscopy_is_the_same(results):
     assert (motion.dwell, motion.setpoint_force) == (1e-6, 2e-9)
     contact = sa.Contact(*(rebuilt(experiment[k]) for k in ("tip", "sample", "surface")))
     again = sa.force_spectroscopy(contact, lever, motion, tolerance=found.attrs["tolerance"])
+    xr.testing.assert_equal(again, found)
+
+
+def test_a_replayed_approach_curve_is_the_same(results):
+    found = results["approach"]
+    experiment = json.loads(found.attrs["experiment"])
+    contact = sa.Contact(*(rebuilt(experiment[k]) for k in ("tip", "sample", "surface")))
+    motion = experiment["motion"]
+    assert motion.pop("kind") == "approach-curve"
+    lever = rebuilt(experiment["cantilever"])
+    again = sa.approach_curve(contact, lever, **motion, tolerance=found.attrs["tolerance"])
     xr.testing.assert_equal(again, found)
 
 
@@ -404,22 +439,40 @@ def test_csv_holds_the_curves(results, tmp_path, name):
         assert unit == result[scalar].units
 
 
+def test_csv_of_an_approach_curve_holds_the_sweep(results, tmp_path):
+    result, path = results["approach"], tmp_path / "sweep.csv"
+    sa.export(result, path)
+    comment, *lines = path.read_text(encoding="utf-8").splitlines()
+    assert json.loads(comment.removeprefix("# experiment = "))["mode"] == "approach-curve"
+    header, *rows = csv.reader(lines)
+    assert header[:2] == ["sweep_height (m)", "approach_amplitude (m)"]
+    swept = [n for n, v in result.data_vars.items() if v.dims == ("sweep_height",)]
+    assert header[1:] == [f"{name} ({result[name].units})" for name in swept]
+    table = np.array(rows, float)
+    assert table.shape == (result.sizes["sweep_height"], len(header))
+    for column, name in zip(table.T, ["sweep_height", *swept], strict=True):
+        assert column == pytest.approx(result[name].values, rel=1e-8, nan_ok=True)
+
+
 def test_csv_keeps_neighbouring_times_apart(results, tmp_path):
-    for number, result in enumerate(results.values()):
+    for number, name in enumerate(HISTORIES):
+        result = results[name]
         path = tmp_path / f"{number}.csv"
         sa.export(result, path)
         table = np.genfromtxt(path, delimiter=",", skip_header=0, comments="#", names=None)
         assert np.all(np.diff(table[1:, 0]) > 0)
 
 
-@pytest.mark.parametrize("name", ["tap", "ramp, profiles"])
+@pytest.mark.parametrize("name", ["tap", "ramp, profiles", "approach"])
 def test_hdf5_holds_everything(results, tmp_path, name):
     h5py = pytest.importorskip("h5py")
     path = tmp_path / "all.h5"
     sa.export(results[name], path)
     with h5py.File(path) as file:
         for variable in results[name].variables:
-            assert np.array_equal(file[variable][...], results[name][variable].values)
+            held = file[variable]
+            found = held.asstr()[...] if held.dtype.kind == "O" else held[...]
+            np.testing.assert_array_equal(found, results[name][variable].values)
             assert file[variable].attrs["units"] == results[name][variable].units
         assert json.loads(file.attrs["experiment"])["tip"]["radius"] == CONTACT.tip.radius
     xr.testing.assert_identical(sa.load(path), results[name])

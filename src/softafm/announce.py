@@ -5,7 +5,6 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from threading import Timer
 
-
 _loaded: set[str] = set()
 
 

@@ -29,9 +29,11 @@ class Experiment:
     Parameters
     ----------
     mode
-        ``"force-distance"``, ``"force-spectroscopy"`` or ``"tapping-cycle"``.
+        ``"force-distance"``, ``"force-spectroscopy"``, ``"tapping-cycle"`` or
+        ``"approach-curve"``.
     contact, motion
-        What touches, and how the tip moves, or the base of its cantilever.
+        What touches, and how the tip moves, or the base of its cantilever; of an approach curve
+        free amplitude, amplitude ratios and frequency of the drive.
     cantilever
         What carries the tip, in a mode that needs one.
     solver
@@ -61,18 +63,23 @@ class Experiment:
         """
         import softafm as sa
 
-        options = {
-            "solver": self.solver,
-            "tolerance": self.tolerance,
-            "profiles": self.profiles,
-            "progress": progress,
-        }
+        options = {"solver": self.solver, "tolerance": self.tolerance, "progress": progress}
+        motion = self.motion
         try:
+            if self.mode == "approach-curve":
+                return sa.approach_curve(
+                    self.contact,
+                    self.cantilever,
+                    motion.free_amplitude,
+                    motion.amplitude_ratio,
+                    drive_frequency=motion.drive_frequency,
+                    **options,
+                )
+            options["profiles"] = self.profiles
             if self.mode == "force-distance":
-                return sa.force_distance(self.contact, self.motion, **options)
+                return sa.force_distance(self.contact, motion, **options)
             if self.mode == "force-spectroscopy":
-                return sa.force_spectroscopy(self.contact, self.cantilever, self.motion, **options)
-            motion = self.motion
+                return sa.force_spectroscopy(self.contact, self.cantilever, motion, **options)
             return sa.tapping_cycle(
                 self.contact,
                 amplitude=motion.amplitude,
@@ -180,22 +187,18 @@ def _experiment(document: Mapping[str, Any], folder: Path) -> Experiment:
     modes = list(schema.MOTIONS)
     if mode is None:
         problems.append(f"mode: missing; must be {one_of(modes)}")
-    elif mode in schema.ANNOUNCED:
-        problems.append(
-            f"mode = {shown(mode)}: is not available in this version; must be {one_of(modes)}"
-        )
     elif mode not in modes:
         problems.append(f"mode = {shown(mode)}: {nearest(mode, modes)}")
 
     tables = [*_TABLES, *(name for name in _OPTIONAL_TABLES if name in document)]
     if mode not in modes:
         tables.remove("motion")
-    elif mode in schema.WITH_CANTILEVER:
+    elif mode in schema.CANTILEVERS:
         tables.append("cantilever")
     elif "cantilever" in document:
         problems.append(
             f"cantilever: of no use with mode = '{mode}'; leave it out, or use the mode "
-            f"{one_of(schema.WITH_CANTILEVER)}"
+            f"{one_of(list(schema.CANTILEVERS))}"
         )
     built: dict[str, Any] = {}
     for name in tables:
@@ -209,30 +212,39 @@ def _experiment(document: Mapping[str, Any], folder: Path) -> Experiment:
             f"run.tolerance = {run.tolerance}: the solver '{solver.kind}' takes fixed steps, which "
             "no tolerance changes; leave it out and use solver.steps"
         )
+    if run.profiles and mode == "approach-curve":
+        problems.append(
+            "run.profiles = True: of no use with mode = 'approach-curve', which keeps the "
+            "observables of its taps and none of their surfaces; leave it out"
+        )
     if problems:
         raise ConfigError(problems)
     contact = Contact(tip=built["tip"], sample=built["sample"], surface=built["surface"])
-    motion = document["motion"]
-    try:
-        refuse_start_inside(contact, built["motion"])
-    except ValueError as error:
-        key = next(key for key in ("start", "mean_height", "file") if key in motion)
-        raise ConfigError([f"motion.{key} = {shown(motion[key])}: {error}"]) from None
-    cantilever = built.get("cantilever")
-    try:
-        refuse_unable(solver, built["motion"], cantilever)
-    except ValueError as error:
-        raise ConfigError([as_written("motion", motion, error) or str(error)]) from None
+    if mode != "approach-curve":
+        _refuse_motion(contact, built["motion"], solver, document["motion"])
     return Experiment(
         mode=str(mode),
         contact=contact,
         motion=built["motion"],
-        cantilever=cantilever,
+        cantilever=built.get("cantilever"),
         solver=solver,
         tolerance=run.tolerance,
         profiles=run.profiles,
         document=document,
     )
+
+
+def _refuse_motion(contact: Contact, motion: Any, solver: Any, written: dict) -> None:
+    """Raise ConfigError if the motion starts inside the surface or the solver cannot follow it."""
+    try:
+        refuse_start_inside(contact, motion)
+    except ValueError as error:
+        key = next(key for key in ("start", "mean_height", "file") if key in written)
+        raise ConfigError([f"motion.{key} = {shown(written[key])}: {error}"]) from None
+    try:
+        refuse_unable(solver, motion)
+    except ValueError as error:
+        raise ConfigError([as_written("motion", written, error) or str(error)]) from None
 
 
 def _build(name: str, document: Mapping[str, Any], mode: Any, folder: Path) -> Any:
@@ -242,8 +254,10 @@ def _build(name: str, document: Mapping[str, Any], mode: Any, folder: Path) -> A
     written = document[name]
     if not isinstance(written, dict):
         raise ConfigError([f"{name} = {shown(written)}: must be a table, [{name}]"])
-    if name in schema.PLAIN:
-        table = _validated(name, schema.PLAIN[name], written, None, folder)
+    if name == "run":
+        table = _validated(name, schema.Run, written, None, folder)
+    elif name == "cantilever":
+        table = _validated(name, schema.CANTILEVERS[mode], written, None, folder)
     else:
         chooser, choices = schema.CHOICES.get(name) or ("shape", schema.MOTIONS[mode])
         names = list(choices)

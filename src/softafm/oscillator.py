@@ -56,6 +56,18 @@ class Drive:
         """Force needed to hold an amplitude over that of the drive, less 1: 0 on a solution."""
         return np.hypot(*self.components(amplitude, virial, dissipation)) / self.force - 1
 
+    def strongest_push(self, amplitude):
+        """Largest −2V/A, N, against which the drive holds an amplitude, without dissipation."""
+        elastic, viscous = self._against
+        left = self.force**2 - (viscous * amplitude) ** 2
+        push = np.sqrt(np.maximum(left, 0.0)) - elastic * amplitude
+        return np.where(left > 0, np.maximum(push, 0.0), 0.0)
+
+    @property
+    def most_dissipation(self) -> float:
+        """Largest E, J, that the drive can feed into a tap: πA(F0 − k A r/Q) at its maximum."""
+        return pi * self.force**2 / (4 * self._against[1])
+
     def phase(self, amplitude, virial, dissipation):
         """Lag φ of the deflection behind the drive, degrees."""
         in_phase, behind = self.components(amplitude, virial, dissipation)
@@ -72,7 +84,7 @@ class Drive:
         whose Jacobian must have a negative trace and a positive determinant.
         """
         in_phase, behind = self.components(amplitude, virial, dissipation)
-        elastic, viscous = self._against
+        viscous = self._against[1]
         a = -viscous - (dissipation_slope - dissipation / amplitude) / (pi * amplitude)
         c = -in_phase / amplitude**2
         c = c + 2 * (virial_slope - 2 * virial / amplitude) / amplitude**2

@@ -1,23 +1,30 @@
 """Static figures of results, one kind for each mode, drawn without pyplot or any global state."""
 
 from collections.abc import Iterator, Sequence
-from math import floor, log10
-from typing import Any, Final
+from typing import Any
 
 import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
-from matplotlib.ticker import EngFormatter, MaxNLocator
 
-from softafm.units import readable
+from softafm.drawing import (
+    APPROACH,
+    COLOURS,
+    RETRACT,
+    colours,
+    factor_of,
+    label_of,
+    quantity,
+    run_entries,
+    stroke_entries,
+    tidy,
+)
+from softafm.sweep_drawing import approach_curve
 
-# Okabe and Ito's palette: told apart under every common colour blindness, and in grey.
-COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000")
-APPROACH: Final = "-"
-RETRACT: Final = (0, (4, 1.5))
-PREFIXES = EngFormatter.ENG_PREFIXES
+__all__ = ["COLOURS", "plot"]
+
 AXES = {
     "time": ("Time", "s"),
     "tip_height": ("Tip height", "m"),
@@ -49,7 +56,9 @@ def plot(
     -------
     matplotlib.figure.Figure
         Force-distance curves; deflection and force in spectroscopy against time, base and tip
-        height; force of a tap against time and tip height. Save it with ``figure.savefig``.
+        height; force of a tap against time and tip height; phase, dissipation and virial of an
+        approach curve against amplitude ratio, and amplitude against height. Save it with
+        ``figure.savefig``.
 
     Raises
     ------
@@ -68,6 +77,7 @@ def plot(
         "force-distance": _force_distance,
         "force-spectroscopy": _force_spectroscopy,
         "tapping-cycle": _tapping_cycle,
+        "approach-curve": approach_curve,
     }
     if len(modes) == 1 and modes[0] in figures:
         return figures[modes[0]](runs, names)
@@ -81,7 +91,7 @@ def _force_distance(runs: list[xr.Dataset], names: list[str]) -> Figure:
     figure = Figure(figsize=(6.4, 4.4), dpi=150, layout="constrained")
     ax = figure.add_subplot()
     _draw(ax, runs, "tip_height")
-    ax.legend(handles=_run_entries(names) + _stroke_entries(runs), frameon=False)
+    ax.legend(handles=run_entries(names) + _stroke_entries(runs), frameon=False)
     return figure
 
 
@@ -98,7 +108,7 @@ def _force_spectroscopy(runs: list[xr.Dataset], names: list[str]) -> Figure:
     _crop(against_time, runs, "time")
     _crop(against_base, runs, "base_height", "tip_height")
     against_time.set_title(_duration(runs), size=10)
-    entries = _run_entries(names) + _stroke_entries(runs)
+    entries = run_entries(names) + _stroke_entries(runs)
     columns = min(len(entries), 6)
     figure.legend(handles=entries, loc="outside lower center", ncols=columns, frameon=False)
     return figure
@@ -119,7 +129,7 @@ def _tapping_cycle(runs: list[xr.Dataset], names: list[str]) -> Figure:
         against_height.set_title(_summary(runs[0]), size=10)
     else:
         summaries = [f"{name}: {_summary(run)}" for name, run in zip(names, runs, strict=True)]
-        figure.legend(handles=_run_entries(summaries), loc="outside lower center", frameon=False)
+        figure.legend(handles=run_entries(summaries), loc="outside lower center", frameon=False)
     return figure
 
 
@@ -131,7 +141,7 @@ def _draw(ax: Axes, runs: list[xr.Dataset], abscissa: str, ordinate: str = "forc
         ax.axvline(0, color="0.75", linewidth=0.8, zorder=0)
     for index, run in enumerate(runs):
         x, y = x_scale * run[abscissa].values, y_scale * run[ordinate].values
-        approach_colour, retract_colour = _colours(index, len(runs))
+        approach_colour, retract_colour = colours(index, len(runs))
         for stroke, falling in _strokes(run[_moved(run)].values):
             ax.plot(
                 x[stroke],
@@ -148,11 +158,9 @@ def _draw(ax: Axes, runs: list[xr.Dataset], abscissa: str, ordinate: str = "forc
             zorder=3,
             **JUMP,
         )
-    ax.set_xlabel(_label(abscissa, x_scale), fontsize=11)
-    ax.set_ylabel(_label(ordinate, y_scale), fontsize=11)
-    for axis in (ax.xaxis, ax.yaxis):
-        axis.set_major_locator(MaxNLocator("auto", steps=[1, 2, 5, 10]))
-    ax.tick_params(direction="in", top=True, right=True)
+    ax.set_xlabel(label_of(*AXES[abscissa], x_scale), fontsize=11)
+    ax.set_ylabel(label_of(*AXES[ordinate], y_scale), fontsize=11)
+    tidy(ax)
 
 
 def _moved(run: xr.Dataset) -> str:
@@ -160,24 +168,9 @@ def _moved(run: xr.Dataset) -> str:
     return "base_height" if "base_height" in run else "tip_height"
 
 
-def _run_entries(names: list[str]) -> list[Line2D]:
-    """Legend entries of runs by colour; none for a run that stands alone."""
-    if len(names) == 1:
-        return []
-    colours = [_colours(index, len(names))[0] for index in range(len(names))]
-    return [
-        Line2D([], [], color=colour, linewidth=2.5, label=name)
-        for colour, name in zip(colours, names, strict=True)
-    ]
-
-
 def _stroke_entries(runs: list[xr.Dataset]) -> list[Line2D]:
     """Legend entries of strokes by line style, and of elastic jumps if there are any."""
-    approach_colour, retract_colour = _colours(0, 1) if len(runs) == 1 else ("black", "black")
-    entries = [
-        Line2D([], [], color=approach_colour, linestyle=APPROACH, label="approach"),
-        Line2D([], [], color=retract_colour, linestyle=RETRACT, label="retract"),
-    ]
+    entries = stroke_entries(len(runs))
     if any(run["jump_time"].size for run in runs):
         entries.append(Line2D([], [], color="black", label="elastic jump", **JUMP))
     return entries
@@ -186,17 +179,10 @@ def _stroke_entries(runs: list[xr.Dataset]) -> list[Line2D]:
 def _summary(run: xr.Dataset) -> str:
     """What a tap does to the oscillation, and how hard it hits."""
     return (
-        f"virial {_quantity(float(run['virial']), 'J')}, "
-        f"dissipation {_quantity(float(run['dissipation']), 'J')}, "
-        f"peak force {_quantity(float(run['force_max']), 'N')}"
+        f"virial {quantity(float(run['virial']), 'J')}, "
+        f"dissipation {quantity(float(run['dissipation']), 'J')}, "
+        f"peak force {quantity(float(run['force_max']), 'N')}"
     )
-
-
-def _colours(index: int, count: int) -> tuple[str, str]:
-    """Colours of approach and retract: one a run, but two for a run that stands alone."""
-    if count == 1:
-        return COLOURS[0], COLOURS[1]
-    return COLOURS[index % len(COLOURS)], COLOURS[index % len(COLOURS)]
 
 
 def _strokes(height: np.ndarray) -> Iterator[tuple[slice, bool]]:
@@ -234,23 +220,9 @@ def _crop(ax: Axes, runs: list[xr.Dataset], *variables: str) -> None:
 
 def _duration(runs: list[xr.Dataset]) -> str:
     duration = max(float(np.ptp(run["time"].values)) for run in runs)
-    return f"Interaction only; the run lasts {_quantity(duration, 's')}"
+    return f"Interaction only; the run lasts {quantity(duration, 's')}"
 
 
 def _scale(runs: list[xr.Dataset], variable: str) -> float:
     """Factor from SI to the prefix that suits the largest value of all runs."""
-    return _factor(max(float(np.max(np.abs(run[variable].values))) for run in runs))
-
-
-def _factor(largest: float) -> float:
-    exponent = 3 * floor(log10(largest) / 3) if largest > 0 else 0
-    return 10.0 ** -min(max(exponent, min(PREFIXES)), max(PREFIXES))
-
-
-def _label(variable: str, factor: float) -> str:
-    title, unit = AXES[variable]
-    return f"{title} ({PREFIXES[-round(log10(factor))]}{unit})"
-
-
-def _quantity(value: float, unit: str) -> str:
-    return readable(value, unit).replace("-", "−")
+    return factor_of(*(run[variable].values for run in runs))

@@ -114,7 +114,7 @@ def dataset(
         data["deformation"] = variable("deformation", ("time", "r"), shapes.deformation)
         data["gap"] = variable("gap", ("time", "r"), gap)
         data["pressure"] = variable("pressure", ("time", "r"), contact.surface.pressure(gap))
-    parts = {"motion": motion} if cantilever is None else {"motion": motion, "cantilever": cantilever}
+    parts = {"motion": motion, **({} if cantilever is None else {"cantilever": cantilever})}
     attributes = _provenance(
         mode, contact, parts, solver, tolerance, history.warnings, history.diagnostics
     )
@@ -204,7 +204,8 @@ def load(path) -> "Dataset":
 def export(result: "Dataset", path, *, overwrite: bool = False) -> None:
     """Write the curves over time to CSV, or the whole result to HDF5, by the path's suffix.
 
-    CSV columns are named ``name (unit)``; the scalars stand above them as comments.
+    CSV columns are named ``name (unit)``; the scalars stand above them as comments. Of an approach
+    curve they are those of the sweep, over ``sweep_height``; its branches are in the HDF5 only.
 
     Raises
     ------
@@ -223,7 +224,8 @@ def export(result: "Dataset", path, *, overwrite: bool = False) -> None:
 
 
 def _write_csv(result, path):
-    curves = [result["time"]] + [v for v in result.data_vars.values() if v.dims == ("time",)]
+    along = "time" if "time" in result.dims else "sweep_height"
+    curves = [result[along]] + [v for v in result.data_vars.values() if v.dims == (along,)]
     scalars = [v for v in result.data_vars.values() if v.dims == ()]
     header = [f"{v.name} = {float(v):.9g} {v.units}" for v in scalars]
     header += [f"experiment = {result.attrs['experiment']}"]

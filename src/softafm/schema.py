@@ -5,14 +5,15 @@ its fields are the table's other keys, and ``build`` returns the object.
 """
 
 from collections.abc import Mapping
-from dataclasses import fields
+from dataclasses import dataclass, fields
 from pathlib import Path
 from typing import Annotated, Any, ClassVar, Literal, get_args, get_origin, get_type_hints
 
+import numpy as np
 from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, ValidationInfo, create_model
 
 from softafm import units
-from softafm._validate import finite, tolerance_of
+from softafm._validate import finite, positive, tolerance_of, whole
 from softafm.cantilever import Cantilever
 from softafm.measured import read_trajectory
 from softafm.motions import Sine, Trajectory, Triangle
@@ -24,6 +25,8 @@ from softafm.solvers.enhanced import EnhancedAttard
 from softafm.solvers.stepping import AdamsBashforth, ForwardEuler, RungeKutta4, Stepper
 from softafm.surfaces import LennardJones
 from softafm.tips import Paraboloid
+
+_MOST_RATIOS = 1000
 
 
 def _read(kind: units.Kind) -> BeforeValidator:
@@ -51,10 +54,33 @@ def _tolerance(written: Any) -> float:
         raise ValueError(str(error).partition(": ")[2]) from None
 
 
-def _count(written: Any) -> int:
-    if isinstance(written, bool) or not isinstance(written, int) or not 1 <= written <= 1_000_000:
-        raise ValueError("must be a whole number from 1 to 1000000")
-    return written
+def _cycles(written: Any) -> int | str:
+    if written == "steady":
+        return "steady"
+    try:
+        return whole("cycles", written, 1, 1_000_000)
+    except ValueError:
+        raise ValueError("must be a whole number from 1 to 1000000, or 'steady'") from None
+
+
+def _points(written: Any) -> int:
+    try:
+        return whole("points", written, 2, _MOST_RATIOS)
+    except ValueError:
+        raise ValueError(f"must be a whole number from 2 to {_MOST_RATIOS}") from None
+
+
+def _ratio(written: Any) -> float:
+    number = _number(written)
+    if not 0 < number < 1:
+        raise ValueError("must be above 0 and below 1")
+    return number
+
+
+def _ratios(written: Any) -> Any:
+    if isinstance(written, list) and len(written) > _MOST_RATIOS:
+        raise ValueError(f"has {len(written)} entries: must have at most {_MOST_RATIOS}")
+    return _list(written)
 
 
 def _whole(written: Any) -> int:
@@ -107,7 +133,13 @@ Compliances = Annotated[
 ]
 Times = Annotated[tuple[Time, ...], BeforeValidator(_list), _described(units.TIME, "a list, each ")]
 Number = Annotated[float, BeforeValidator(_number), Field(description="a number, such as 0.49")]
-Count = Annotated[int, BeforeValidator(_count)]
+QualityFactor = Annotated[
+    float, BeforeValidator(_number), Field(description="a number, such as 430")
+]
+Ratio = Annotated[float, BeforeValidator(_ratio)]
+Ratios = Annotated[tuple[Ratio, ...], BeforeValidator(_ratios)]
+Points = Annotated[int, BeforeValidator(_points)]
+Cycles = Annotated[int | Literal["steady"], BeforeValidator(_cycles)]
 Flag = Annotated[bool, BeforeValidator(_flag)]
 Tolerance = Annotated[float, BeforeValidator(_tolerance)]
 File = Annotated[Path, BeforeValidator(_file), Field(description="the name of a CSV file")]
@@ -224,15 +256,21 @@ class TriangleMotion(Table):
 
 
 class SineMotion(Table):
-    """``[motion] shape = "sine"``, and the motion of a tapping cycle."""
+    """``[motion] shape = "sine"``."""
 
     mean_height: Length
     amplitude: Length
     frequency: Frequency
-    cycles: Count = 1
+    cycles: Cycles = 1
 
     def build(self) -> Sine:
         return Sine(self.mean_height, self.amplitude, self.frequency, self.cycles)
+
+
+class TapMotion(SineMotion):
+    """``[motion]`` of a tapping cycle."""
+
+    cycles: Cycles = "steady"
 
 
 class TrajectoryMotion(Table):
@@ -247,15 +285,58 @@ class TrajectoryMotion(Table):
             raise ValueError(f"file = {self.file.name}: {error}") from error
 
 
-class CantileverTable(Table):
-    """``[cantilever]``."""
+@dataclass(frozen=True)
+class AmplitudeSweep:
+    """What ``softafm.approach_curve`` takes besides contact and cantilever."""
+
+    free_amplitude: float
+    amplitude_ratio: tuple[float, ...]
+    drive_frequency: float | None = None
+
+
+class SweepMotion(Table):
+    """``[motion]`` of an approach curve: amplitude ratios, listed or evenly spaced."""
+
+    free_amplitude: Length
+    amplitude_ratio: Ratios | None = None
+    first_ratio: Ratio | None = None
+    last_ratio: Ratio | None = None
+    points: Points | None = None
+    drive_frequency: Frequency | None = None
+
+    def build(self) -> AmplitudeSweep:
+        self.given(("amplitude_ratio",), ("first_ratio", "last_ratio", "points"))
+        positive("free_amplitude", self.free_amplitude, "m")
+        if self.drive_frequency is not None:
+            positive("drive_frequency", self.drive_frequency, "Hz")
+        first, last, points = self.first_ratio, self.last_ratio, self.points
+        ratios = self.amplitude_ratio or ()
+        if first is not None and last is not None and points is not None:
+            if first == last:
+                raise ValueError(
+                    f"first_ratio = {first}: must differ from last_ratio; for one ratio write "
+                    "amplitude_ratio, a list"
+                )
+            ratios = tuple(np.linspace(first, last, points).tolist())
+        return AmplitudeSweep(self.free_amplitude, ratios, self.drive_frequency)
+
+
+class LeverTable(Table):
+    """``[cantilever]`` of a lever that bends slowly."""
 
     stiffness: Stiffness
-    quality_factor: Number | None = None
+    quality_factor: QualityFactor | None = None
     frequency: Frequency | None = None
 
     def build(self) -> Cantilever:
         return Cantilever(self.stiffness, self.quality_factor, self.frequency)
+
+
+class ResonatorTable(LeverTable):
+    """``[cantilever]`` of a lever that oscillates."""
+
+    quality_factor: QualityFactor
+    frequency: Frequency
 
 
 class Run(Table):
@@ -330,9 +411,6 @@ CHOICES: dict[str, tuple[str, dict[str, type[Table]]]] = {
 }
 """For each table the key that chooses, and what it can choose."""
 
-PLAIN: dict[str, type[Table]] = {"cantilever": CantileverTable, "run": Run}
-"""Tables without a choice."""
-
 _ANY_MOTION: dict[str, type[Table]] = {
     "triangle": TriangleMotion,
     "sine": SineMotion,
@@ -342,12 +420,13 @@ _ANY_MOTION: dict[str, type[Table]] = {
 MOTIONS: dict[str, dict[str, type[Table]]] = {
     "force-distance": _ANY_MOTION,
     "force-spectroscopy": _ANY_MOTION,
-    "tapping-cycle": {"sine": SineMotion},
+    "tapping-cycle": {"sine": TapMotion},
+    "approach-curve": {"sine": SweepMotion},
 }
 """For each mode the shapes of motion it takes, the default one first."""
 
-WITH_CANTILEVER = ("force-spectroscopy",)
-"""Modes that need a cantilever; the others have no use for one."""
-
-ANNOUNCED = ("approach-curve",)
-"""Modes that the format knows and this version cannot run."""
+CANTILEVERS: dict[str, type[Table]] = {
+    "force-spectroscopy": LeverTable,
+    "approach-curve": ResonatorTable,
+}
+"""For each mode that needs a cantilever its table; the others have no use for one."""

@@ -5,18 +5,24 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from rich.table import Table
 
+from softafm.modes.approach import deepest_tap, drive_of
 from softafm.motions import lowest_height
 from softafm.solvers.energy import Energy, cohesive_lengths_crossed
+from softafm.sweeps import DIRECTIONS, jumps_of
 from softafm.units import readable
 
 if TYPE_CHECKING:
     from xarray import Dataset
 
     from softafm.config import Experiment
+    from softafm.oscillator import Drive
+
+_TAPS = 130
+"""Taps of an approach curve, by experience."""
 
 
 def observables(dataset: "Dataset") -> Table:
-    """Return a table of every scalar of a result, and of the number of elastic jumps."""
+    """Return a table of every scalar of a result, or of the branches and jumps of a sweep."""
     table = _table(str(dataset.attrs.get("mode", "result")))
     for name, variable in dataset.data_vars.items():
         if variable.ndim == 0 and np.issubdtype(variable.dtype, np.number):
@@ -24,12 +30,48 @@ def observables(dataset: "Dataset") -> Table:
             table.add_row(str(name), value, str(variable.attrs.get("long_name", "")))
     if "jump_time" in dataset:
         table.add_row("jumps", str(dataset["jump_time"].size), "elastic instabilities crossed")
+    if "branch" in dataset.dims:
+        _add_branches(table, dataset)
     return table
+
+
+def _add_branches(table: Table, dataset: "Dataset") -> None:
+    """Tell how far each branch reaches, and where the lever jumps in a sweep of its height."""
+    for branch in map(str, dataset["branch"].values):
+        found = dataset.sel(branch=branch).dropna("amplitude_ratio", subset=["mean_height"])
+        count = found.sizes["amplitude_ratio"]
+        words = "amplitudes"
+        if count:
+            most = readable(float(found["dissipation"].max()), "J")
+            words += f"; {_degrees(found['phase'].values)}, at most {most}"
+        table.add_row(branch, f"{count} of {dataset.sizes['amplitude_ratio']}", words)
+    for direction in DIRECTIONS:
+        for before, after in jumps_of(dataset, direction):
+            height = readable(float(dataset["sweep_height"][after]), "m")
+            amplitude, phase = (
+                dataset[f"{direction}_{name}"].values[[before, after]]
+                for name in ("amplitude", "phase")
+            )
+            lengths = " to ".join(readable(value, "m") for value in amplitude)
+            words = f"{lengths}, {phase[0]:.0f}° to {phase[1]:.0f}°"
+            table.add_row(f"jump on {direction}", height, words)
+    table.add_row("taps", str(int(dataset.attrs["solver_taps"])), "that were run")
+
+
+def _degrees(phase: np.ndarray) -> str:
+    return f"{phase.min():.0f}° to {phase.max():.0f}°"
 
 
 def regime(experiment: "Experiment") -> Table:
     """Return a table of the numbers that say how a contact will behave and what it will cost."""
     contact, motion = experiment.contact, experiment.motion
+    tapping = experiment.mode == "approach-curve"
+    if tapping:
+        drive, frequency = drive_of(
+            experiment.cantilever, motion.free_amplitude, motion.drive_frequency
+        )
+        amplitudes = motion.free_amplitude * np.array(motion.amplitude_ratio)
+        motion = deepest_tap(contact, drive, frequency, amplitudes)
     first, last = float(motion.breaks[0]), float(motion.breaks[-1])
     lowest = lowest_height(motion)
     radius = contact.contact_radius(lowest)
@@ -44,16 +86,20 @@ def regime(experiment: "Experiment") -> Table:
         table.add_row(f"cohesive length, {when}", readable(length, "m"), "tension zone at the edge")
     work = readable(contact.surface.work_of_adhesion, "J/m²")
     table.add_row("work of adhesion", work, "per area, to part the surfaces")
-    carried = experiment.cantilever is not None
+    carried = experiment.cantilever is not None and not tapping
     where = "above the undeformed surface" + (", lever unbent" if carried else "")
+    where = "of a tap: Hertz against the drive" if tapping else where
     table.add_row("lowest tip height", readable(lowest, "m"), where)
     jkr = "JKR, slow, at the lowest height" if radius else "none is expected to last"
     table.add_row("contact radius", readable(radius, "m"), jkr)
     if carried:
         _add_lever(table, experiment, radius)
-    table.add_row("time of the motion", readable(last - first, "s"), "")
+    if tapping:
+        _add_drive(table, experiment, drive)
+    whole = "tap" if tapping else "motion"
+    table.add_row(f"time of the {whole}", readable(last - first, "s"), "")
     for creep_time in map(float, contact.sample.reduced_compliance.retardation_times):
-        words = _creep_in_words(creep_time / (last - first))
+        words = _creep_in_words(creep_time / (last - first), whole)
         table.add_row("creep time", readable(creep_time, "s"), words)
     solver: Any = Energy() if experiment.solver is None else experiment.solver
     if solver.adaptive:
@@ -61,7 +107,9 @@ def regime(experiment: "Experiment") -> Table:
         reason = f"the edge crosses at most {crossed:.2g} cohesive lengths"
     else:
         reason = f"{solver.steps} steps of {solver.nodes} nodes"
-    cost = _cost_in_words(solver.expected_seconds(contact, motion))
+    runs = _TAPS if tapping else 1
+    reason = f"some {_TAPS} taps; {reason}" if tapping else reason
+    cost = _cost_in_words(runs * solver.expected_seconds(contact, motion))
     table.add_row("expected cost", cost, reason)
     return table
 
@@ -80,6 +128,16 @@ def _add_lever(table: Table, experiment: "Experiment", radius: float) -> None:
         table.add_row("contact stiffness", readable(stiffness, "N/m"), words)
 
 
+def _add_drive(table: Table, experiment: "Experiment", drive: "Drive") -> None:
+    """Tell what drives the lever, and what that can hold and feed."""
+    table.add_row("lever stiffness", readable(drive.stiffness, "N/m"), "")
+    words = f"driven at {drive.detuning:.4g} of the resonance, Q = {drive.quality_factor:.4g}"
+    table.add_row("free amplitude", readable(drive.free_amplitude, "m"), words)
+    table.add_row("force of the drive", readable(drive.force, "N"), "amplitude, on the tip")
+    most = readable(drive.most_dissipation, "J")
+    table.add_row("largest dissipation", most, "that the drive can feed, a cycle")
+
+
 def _table(title: str) -> Table:
     table = Table(title=title, title_justify="left", show_header=False, box=None)
     table.add_column(no_wrap=True)
@@ -96,12 +154,12 @@ def _tabor_in_words(tabor: float) -> str:
     return "soft (JKR): adhesion acts at the edge"
 
 
-def _creep_in_words(share: float) -> str:
+def _creep_in_words(share: float, whole: str) -> str:
     if share < 1e-3:
-        return f"{share:.2g} of the motion: nearly relaxed"
+        return f"{share:.2g} of the {whole}: nearly relaxed"
     if share > 1e2:
-        return f"{share:.2g} motions: nearly elastic, at the short-time modulus"
-    return f"{share:.2g} of the motion: viscoelastic"
+        return f"{share:.2g} {whole}s: nearly elastic, at the short-time modulus"
+    return f"{share:.2g} of the {whole}: viscoelastic"
 
 
 def _cost_in_words(seconds: float) -> str:

@@ -38,7 +38,7 @@ def approach_curve(
     tolerance: float = 1e-2,
     progress: bool | Progress | None = None,
 ) -> "Dataset":
-    """Heights of a tapping lever for given amplitudes, and what is recorded on approach and retract.
+    """Heights of a tapping lever for given amplitudes, and what it records on approach and retract.
 
     The tip oscillates about the mean height Z with amplitude A, in a steady cycle each, and the
     drive stays what it is. Where several heights belong to one amplitude all are found, and which
@@ -81,16 +81,7 @@ def approach_curve(
     solver = Energy() if solver is None else solver
     ratios = _ratios(amplitude_ratio)
     free_amplitude = positive("free_amplitude", free_amplitude, "m")
-    for name in ("quality_factor", "frequency"):
-        if getattr(cantilever, name) is None:
-            raise ValueError(f"cantilever.{name} = None: must be given for an approach curve")
-    frequency = cantilever.frequency
-    if drive_frequency is not None:
-        frequency = positive("drive_frequency", drive_frequency, "Hz")
-    drive = Drive(
-        cantilever.stiffness, cantilever.quality_factor, frequency / cantilever.frequency,
-        free_amplitude,
-    )  # fmt: skip
+    drive, frequency = drive_of(cantilever, free_amplitude, drive_frequency)
 
     def tap(amplitude, approach):
         motion = Sine(amplitude + approach, amplitude, frequency, "steady")
@@ -124,6 +115,34 @@ def approach_curve(
     )  # fmt: skip
 
 
+def drive_of(cantilever: Cantilever, free_amplitude, drive_frequency=None) -> tuple[Drive, float]:
+    """Return the drive of a lever and its frequency, Hz; ValueError if it cannot be driven."""
+    quality, resonance = cantilever.quality_factor, cantilever.frequency
+    if quality is None or resonance is None:
+        name = "quality_factor" if quality is None else "frequency"
+        raise ValueError(f"cantilever.{name} = None: must be given for an approach curve")
+    frequency = resonance
+    if drive_frequency is not None:
+        frequency = positive("drive_frequency", drive_frequency, "Hz")
+    return Drive(cantilever.stiffness, quality, frequency / resonance, free_amplitude), frequency
+
+
+def deepest_tap(contact: Contact, drive: Drive, frequency: float, amplitudes) -> Sine:
+    """Estimate which tap of several amplitudes, m, indents most, before any run.
+
+    A brief contact has V = −A F with the mean force F, at most half of what the drive can push
+    against. F is that of Hertz, δ^1.5, over a parabola in time about the depth δ:
+    F = δ² √(2R/A)/(4 c) with the relaxed compliance c. Attraction, which adds to δ, is left out.
+    """
+    amplitudes = np.asarray(amplitudes, float)
+    mean_force = drive.strongest_push(amplitudes) / 2
+    compliance = contact.sample.reduced_compliance.relaxed
+    depth = np.sqrt(4 * compliance * mean_force / np.sqrt(2 * contact.tip.radius / amplitudes))
+    deepest = depth.argmax()
+    amplitude = float(amplitudes[deepest])
+    return Sine(amplitude - float(depth[deepest]), amplitude, frequency, "steady")
+
+
 def _warnings(taps, tap, drive, tolerance, found: Solutions):
     """Tell of missing and surplus solutions, and run a few again to see whether they hold."""
     if found.amplitude.size == 0:
@@ -155,7 +174,7 @@ def _tables(curve: AmplitudeCurve, ratios, found: Solutions):
     columns = np.vstack([found.amplitude + found.approach, found.phase, curve.observables(found)])
     for i in np.argsort(found.approach):  # the farthest last
         table[:, BRANCHES.index(found.branch[i]), found.row[i]] = columns[:, i]
-    data = {
+    data: dict[str, tuple] = {
         name: (("branch", "amplitude_ratio"), values)
         for name, values in zip(names, table, strict=True)
     }

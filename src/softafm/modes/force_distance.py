@@ -61,7 +61,7 @@ def force_distance(
 
 
 def ramp_observables(history, path) -> dict[str, tuple]:
-    """Return the scalars of a force curve whose ``path`` (n,), m, is the motion that was carried out."""
+    """Return the scalars of a force curve; ``path`` (n,), m, is the motion as carried out."""
     force = history.force
     lowest = history.time[np.argmin(path)]
     return {

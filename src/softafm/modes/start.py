@@ -13,7 +13,7 @@ def carry(contact, motion, solver, tolerance, profiles, progress, **options):
     tolerance = tolerance_of(tolerance)
     solver = Energy() if solver is None else solver
     refuse_start_inside(contact, motion)
-    refuse_unable(solver, motion, options.get("stiffness"))
+    refuse_unable(solver, motion)
     with reporting(progress) as report:
         history = solver.solve(
             contact, motion, tolerance=tolerance, profiles=profiles, progress=report, **options
@@ -37,7 +37,7 @@ def refuse_start_inside(contact, motion) -> None:
         )
 
 
-def refuse_unable(solver, motion, lever=None) -> None:
+def refuse_unable(solver, motion) -> None:
     """Raise ValueError if a solver of fixed steps is to turn at a force."""
     if solver is None or solver.adaptive:
         return

@@ -7,6 +7,7 @@ lines by a polynomial in ln A.
 """
 
 from collections.abc import Callable
+from itertools import pairwise
 
 import numpy as np
 
@@ -79,7 +80,7 @@ class TapMap:
     def _combine(self, interpolants, amplitude, approach):
         """Lagrange's polynomial in ln A through the lines, times √A."""
         amplitude, approach = np.broadcast_arrays(amplitude, approach)
-        log, total = np.log(amplitude), 0.0
+        log, total = np.log(amplitude), np.zeros(1)
         for line, interpolant in enumerate(interpolants):
             weight = np.sqrt(amplitude)
             for other in np.delete(self._logs, line):
@@ -131,7 +132,7 @@ class TapMap:
 
     def _refine(self, line: int, start):
         """Halve intervals of a line while their middles are not met by interpolation."""
-        intervals = list(zip(start[:-1], start[1:], strict=True))
+        intervals = list(pairwise(start))
         while intervals and len(self._samples[line]) < _MOST_SAMPLES:
             interpolant, missed = self._interpolant(line), []
             for low, high in intervals:

@@ -1,7 +1,6 @@
 """One run of the energy solver: from stop to stop, through falls, into a history."""
 
 from collections.abc import Iterator
-from itertools import pairwise
 from math import sqrt
 
 import numpy as np

@@ -143,8 +143,9 @@ class Surface:
         unknowns = np.append(shape, clock[k.DEFLECTION])
         lever = self.parameters.lever[0] / (2 * np.pi * frame**2)
         iterations = k.settle(
-            unknowns, v, frame * instantaneous, base + tip, lever, mesh.nodes[-1] ** 2 / 2 / tip[-1],
-            mesh, law, potential, self.parameters.law, self.accuracy,
+            unknowns, v, frame * instantaneous, base + tip, lever,
+            mesh.nodes[-1] ** 2 / 2 / tip[-1], mesh,
+            law, potential, self.parameters.law, self.accuracy,
         )  # fmt: skip
         if iterations < 0:
             raise DivergedError(f"no stable surface found at height {base:g} m")
@@ -173,7 +174,7 @@ class Surface:
         return record
 
     def energy(self) -> float:
-        """Energy of the contact as an instantaneous elastic one, to infinity, and of the lever, J."""
+        """Energy of the contact as an instantaneous elastic one, to infinity, and the lever, J."""
         mesh, frame, deflection = self.mesh, self.clock[k.FRAME], self.clock[k.DEFLECTION]
         h0 = self.functions[0](self.time, self.parameters.height) + deflection
         load = self.fields[k.LOAD]

@@ -334,8 +334,9 @@ def rates_under_base(
 ):
     """Rates of a state under a tip that moves at ``base_speed``, or whose lever's base does.
 
-    Then ``work.tip[1]`` gets the speed of the tip, m/s. The rates of the surface are linear in the speed of the tip, u̇ = α + β ḣ0, so that with a base
-    that moves at Ż the derivative of k (h0 − Z) = F is one equation for ḣ0:
+    Then ``work.tip[1]`` gets the speed of the tip, m/s. The rates of the surface are linear in it,
+    u̇ = α + β ḣ0, so that with a base that moves at Ż the derivative of k (h0 − Z) = F is one
+    equation for ḣ0:
 
         k (ḣ0 − Ż) = 2π ∫ p' (ḣ0 − u̇) r dr − (k (h0 − Z) − F)/10 dt,
 

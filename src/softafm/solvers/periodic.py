@@ -1,7 +1,7 @@
 """The memory with which a cycle ends as it began.
 
-Over one cycle the memory y_m fades by e^(−T/τ_m) and gains what the cycle loads, Δ_m. If every cycle
-loaded it alike, it would settle at
+Over one cycle the memory y_m fades by e^(−T/τ_m) and gains what the cycle loads, Δ_m. If every
+cycle loaded it alike, it would settle at
 
     Φ_m(y) = Δ_m / (1 − e^(−T/τ_m)).
 
