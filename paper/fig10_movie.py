@@ -69,7 +69,7 @@ def report_frames(tap, setup_e, instants):
 
 def report_strokes(tap):
     """Contact radius at the same tip heights on the way down and up, and the largest bulge."""
-    time, height = tap["time"].values, tap["tip_height"].values
+    height = tap["tip_height"].values
     lowest = height.argmin()
     strokes = slice(None, lowest + 1), slice(lowest, None)
     rows = []

@@ -318,7 +318,7 @@ def test_ratios_out_of_range_are_refused(bad):
 
 @pytest.mark.parametrize("bad", [[], [[0.5, 0.6]]])
 def test_misshapen_ratios_are_refused(bad):
-    with pytest.raises(ValueError, match="^amplitude_ratio has shape"):
+    with pytest.raises(ValueError, match=r"^amplitude_ratio has shape"):
         sa.approach_curve(PS, LEVER, FREE, bad)
 
 

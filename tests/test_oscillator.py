@@ -95,7 +95,7 @@ class CubicSpring:
 
 
 class FarAttraction:
-    """f = −c/(Z + q)² + c/Z²: van der Waals force less its pull at rest, bistable below resonance."""
+    """f = −c/(Z + q)² + c/Z²: van der Waals, less its pull at rest; bistable below resonance."""
 
     c, height = 0.03, 1.4
 
@@ -173,6 +173,7 @@ def wander(case, drive, wanted, periods=200):
         (CubicSpring(), 1.02, 0.35, [True, False, True]),
         (FarAttraction(), 0.976, 0.22, [True, False, True]),
         (SelfExcited(), 1.01, 0.2, [False]),
+        (SelfExcited(), 1.01, 0.77, [True]),
         (SelfExcited(), 1.01, 1.2, [True]),
     ],
 )

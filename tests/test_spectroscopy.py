@@ -58,7 +58,6 @@ def test_reference_case(name, reference_cases):
 
 
 def test_a_stiff_lever_moves_the_tip_itself():
-    # z0 wide enough for no jump of either: it would be at another step.
     one = sa.force_spectroscopy(LDPE, sa.Cantilever(1e6), RAMP, tolerance=1e-3)
     other = sa.force_distance(LDPE, RAMP, tolerance=1e-3)
     for key in ("force_max", "force_min", "force_min_approach", "loop_energy", "viscous_loss"):
@@ -240,7 +239,7 @@ def test_a_setpoint_below_the_force_at_the_start_is_refused():
     stiff = sa.Cantilever(1e3)
     start = float(sa.force_spectroscopy(contact, stiff, sa.Triangle(**ramp))["force"][0])
     assert start > 0
-    with pytest.raises(ValueError, match="setpoint_force = .* N: must be above") as caught:
+    with pytest.raises(ValueError, match=r"^setpoint_force = .* N: must be above") as caught:
         sa.force_spectroscopy(contact, stiff, sa.Triangle(**ramp, setpoint_force=0.9 * start))
     assert f"{start:.3g} N" in str(caught.value)
     sa.force_spectroscopy(contact, stiff, sa.Triangle(**ramp, setpoint_force=1.1 * start))
@@ -268,7 +267,7 @@ def test_sines_and_trajectories_move_the_base():
 
 @pytest.mark.parametrize("lever", [28.1, None])
 def test_what_is_no_cantilever_is_refused(lever):
-    with pytest.raises(ValueError, match="^cantilever = "):
+    with pytest.raises(ValueError, match=r"^cantilever = "):
         sa.force_spectroscopy(LDPE, lever, RAMP)
 
 

@@ -285,9 +285,9 @@ def test_a_load_without_feedback_is_periodic_after_one_cycle():
     load = np.array([[1.0, 2.0, 3.0], [4.0, 5.0, 6.0]])
     offs, memory = Cycle(lambda memory: load).settle(np.zeros((2, 3)), 2)
     fading = np.exp(-1 / Cycle.times)[:, None]
-    # Every cycle the memory fades and is loaded anew.
-    for _ in range(1000):
-        brute = load if _ == 0 else fading * brute + load
+    brute = np.zeros((2, 3))
+    for _ in range(1000):  # every cycle the memory fades and is loaded anew
+        brute = fading * brute + load
     assert memory == pytest.approx(brute)
     assert offs[1] < 1e-9 * offs[0]
 

@@ -97,13 +97,15 @@ class Run:
         surface, start = self.surface, self.surface.time
         modes, times = surface.parameters.compliance[1:], surface.parameters.retardation
         periodic = PeriodicMemory(self.motion.breaks[-1] - start, modes, times)
-        memory = np.zeros_like(surface.fields[k.MEMORY :])
+        memory = None
         for self.cycle in range(1, _MOST_CYCLES + 1):
             self.chunks.clear()
             if self.shapes is not None:
                 self.shapes.clear()
             yield from self.steps()
-            memory, off = periodic.next_start(memory, surface.rewind(start))
+            gained = surface.rewind(start)
+            memory = np.zeros_like(gained) if memory is None else memory
+            memory, off = periodic.next_start(memory, gained)
             self.unsteady = off / surface.gap_of_tension
             if self.unsteady <= 1e-2 * self.strictness:
                 return

@@ -47,14 +47,14 @@ class Surface:
         self.level = min(_FIRST_LEVEL, self.finest_level)
         self.mesh = self._mesh(self.level)
         self.meshes, self.most_nodes = 1, self.mesh.nodes.size
-        self.finest_spacing = self.mesh.edge_spacing
+        self.finest_spacing, self.finest_used = self.mesh.edge_spacing, self.level
         modes = self.parameters.retardation.size
         self.fields = np.zeros((k.MEMORY + modes, self.mesh.nodes.size))
         self.clock = np.zeros(k.CLOCK_SIZE)
         self.clock[k.TIME] = motion.breaks[0]
-        start = float(motion.height(motion.breaks[0]))
-        self.start_frame = k.frame_for(contact.contact_radius(start), self.open_frame)
-        self.clock[k.FRAME] = self.start_frame
+        first = contact.contact_radius(float(motion.height(motion.breaks[0])))
+        self.clock[k.FRAME] = k.frame_for(first, self.open_frame)
+        self.archive: tuple[k.Mesh, float] | None = None
         self.background = k.Background(np.empty((0, 0)), 1.0, 1.0, 1.0, 1.0, 0.0)
         work = contact.surface.work_of_adhesion
         self.clock[k.FORCE_SCALE] = 0.2 * np.pi * contact.tip.radius * work
@@ -79,28 +79,40 @@ class Surface:
         if coarseness > 0:
             wanted = self.mesh.edge_spacing * self.target / coarseness
             level = ceil(log2(_COARSEST_SPACING / wanted) - 1e-9)
-        self._move_to(min(max(level, 0), self.finest_level), 1.0)
+        self.level = min(max(level, 0), self.finest_level)
+        mesh = self._mesh(self.level)
+        self.fields, self.mesh = self._carried(self.fields, mesh, 1.0), mesh
         self.meshes += 1
         self.most_nodes = max(self.most_nodes, self.mesh.nodes.size)
         self.finest_spacing = min(self.finest_spacing, self.mesh.edge_spacing)
+        self.finest_used = max(self.finest_used, self.level)
 
     def rewind(self, time: float) -> np.ndarray:
-        """Go back to ``time``, always in the same frame; return the memory gained since, Pa·m.
+        """Go back to ``time``; return the memory gained since, (modes, n) in Pa·m.
 
-        Shape (modes, n). Whoever goes on has to ``remember`` and to ``settle``.
+        It is returned on a mesh of its own, always the same, that of the finest level so far. The
+        surface keeps its mesh if it is in contact. Whoever goes on has to ``remember``, then to
+        ``settle``.
         """
-        self._move_to(min(_FIRST_LEVEL, self.finest_level), self.start_frame / self.clock[k.FRAME])
-        self.clock[k.FRAME] = self.start_frame
-        self.clock[k.TIME] = time
-        gained = self.fields[k.MEMORY :].copy()
+        clock = self.clock
+        if self.archive is None:
+            self.archive = self._mesh(self.finest_used), float(clock[k.FRAME])
+        archive, frame = self.archive
+        gained = self._carried(self.fields[k.MEMORY :], archive, frame / clock[k.FRAME])
+        if clock[k.EDGE] == 0:
+            self.level = min(_FIRST_LEVEL, self.finest_level)
+            mesh = self._mesh(self.level)
+            self.fields = self._carried(self.fields, mesh, self.open_frame / clock[k.FRAME])
+            self.mesh, clock[k.FRAME] = mesh, self.open_frame
         self.fields[k.MEMORY :] = 0
+        clock[k.TIME] = time
         return gained
 
     def remember(self, memory) -> None:
         """Take ``memory``, as ``rewind`` returned it, for that of all that was before now."""
-        mesh = self.mesh
+        mesh, frame = self.archive
         self.background = k.Background(
-            memory, self.start_frame, mesh.nodes[-1], mesh.edge_spacing, mesh.growth, self.time
+            memory, frame, mesh.nodes[-1], mesh.edge_spacing, mesh.growth, self.time
         )
 
     def memory(self) -> np.ndarray:
@@ -112,17 +124,15 @@ class Surface:
         )  # fmt: skip
         return memory + self.fields[k.MEMORY :]
 
-    def _move_to(self, level: int, stretch: float) -> None:
-        """Carry all fields to the mesh of a level in a frame ``stretch`` times larger."""
-        old, self.level = self.mesh, level
-        self.mesh = self._mesh(level)
-        fields = np.empty((self.fields.shape[0], self.mesh.nodes.size))
-        for before, after in zip(self.fields, fields, strict=True):
+    def _carried(self, fields, mesh: k.Mesh, stretch: float) -> np.ndarray:
+        """Return fields (m, n) on another mesh, in a frame ``stretch`` times larger."""
+        old, result = self.mesh, np.empty((len(fields), mesh.nodes.size))
+        for before, after in zip(fields, result, strict=True):
             k.transfer(
                 before, old.nodes.size, old.nodes[-1], old.edge_spacing, old.growth, stretch,
-                self.mesh.nodes, after,
+                mesh.nodes, after,
             )  # fmt: skip
-        self.fields = fields
+        return result
 
     def settle(self) -> np.ndarray:
         """Equilibrate at frozen memory and return the state as a record."""
