@@ -48,13 +48,13 @@ class Surface:
         self.mesh = self._mesh(self.level)
         self.meshes, self.most_nodes = 1, self.mesh.nodes.size
         self.finest_spacing, self.finest_used = self.mesh.edge_spacing, self.level
+        self.archive = self.mesh, 0.0
         modes = self.parameters.retardation.size
         self.fields = np.zeros((k.MEMORY + modes, self.mesh.nodes.size))
         self.clock = np.zeros(k.CLOCK_SIZE)
         self.clock[k.TIME] = motion.breaks[0]
         first = contact.contact_radius(float(motion.height(motion.breaks[0])))
         self.clock[k.FRAME] = k.frame_for(first, self.open_frame)
-        self.archive: tuple[k.Mesh, float] | None = None
         self.background = k.Background(np.empty((0, 0)), 1.0, 1.0, 1.0, 1.0, 0.0)
         work = contact.surface.work_of_adhesion
         self.clock[k.FORCE_SCALE] = 0.2 * np.pi * contact.tip.radius * work
@@ -95,7 +95,7 @@ class Surface:
         ``settle``.
         """
         clock = self.clock
-        if self.archive is None:
+        if self.archive[1] == 0:
             self.archive = self._mesh(self.finest_used), float(clock[k.FRAME])
         archive, frame = self.archive
         gained = self._carried(self.fields[k.MEMORY :], archive, frame / clock[k.FRAME])
