@@ -136,8 +136,8 @@ def attempt(run: Callable) -> Outcome:
 
 
 def tap(contact: sa.Contact, motion: sa.Sine, solver=None, **options) -> Outcome:
-    """One tapping cycle."""
-    at = motion.amplitude, motion.mean_height, motion.frequency
+    """Taps, as many as the motion has."""
+    at = motion.amplitude, motion.mean_height, motion.frequency, motion.cycles
     return attempt(lambda: sa.tapping_cycle(contact, *at, solver=solver, **options))
 
 

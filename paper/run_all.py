@@ -19,6 +19,7 @@ import fig9_approach
 import fig10_movie
 import fold_scatter
 import smooth_tap
+import steady_taps
 
 if __name__ == "__main__":
     common.run(
@@ -32,4 +33,5 @@ if __name__ == "__main__":
         fig10_movie.main,
         fold_scatter.main,
         smooth_tap.main,
+        steady_taps.main,
     )

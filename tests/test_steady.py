@@ -273,7 +273,7 @@ class Cycle:
 
     def settle(self, memory, cycles):
         """Distances of the starts of all cycles from the periodic memory, and the last start."""
-        seeker, offs = PeriodicMemory(1.0, self.compliances, self.times), []
+        seeker, offs = PeriodicMemory(1.0, self.compliances, self.times, np.inf), []
         for _ in range(cycles):
             start = memory
             memory, off = seeker.next_start(start, self.gained(start))
@@ -326,3 +326,17 @@ def test_a_nonlinear_feedback_is_found():
     offs, memory = Cycle(gained).settle(np.zeros((2, 3)), 40)
     assert memory == pytest.approx(np.tanh(shifts - 4 * memory), abs=1e-6)
     assert offs[-1] < 1e-6 * offs[0]
+
+
+def test_cycles_that_find_no_steady_state_are_warned_of(monkeypatch):
+    from softafm.solvers import energy_run
+
+    monkeypatch.setattr(energy_run, "_MOST_CYCLES", 2)
+    contact = sa.Contact(
+        sa.Paraboloid(10e-9),
+        sa.StandardLinearSolid(2e9, 0.1e9, 10 / 278e3, 0.49),
+        sa.LennardJones(1e-19, 3e-10),
+    )
+    with pytest.warns(sa.AccuracyWarning, match="no steady cycle after 2: the surface starts"):
+        result = sa.tapping_cycle(contact, 49.6e-9, 46e-9, 278e3)
+    assert "no steady cycle" in result.attrs["warnings"]

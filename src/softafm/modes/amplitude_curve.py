@@ -22,10 +22,15 @@ class Solutions(NamedTuple):
 
     @property
     def branch(self) -> list[str]:
-        """Branch of each: stable ones by the sign of the mean pull on the lever, that is, phase."""
+        """Branch of each. Of two stable ones in a row the farther is attractive, the nearer
+        repulsive; one alone by its phase, over or below 90°."""
         attractive, unstable, repulsive = BRANCHES
-        kinds = np.where(self.phase > 90, attractive, repulsive)
-        return np.where(self.stable, kinds, unstable).tolist()
+        names = np.where(self.phase > 90, attractive, repulsive)
+        for row in np.unique(self.row):
+            stable = np.flatnonzero((self.row == row) & self.stable)
+            if stable.size > 1:
+                names[stable[0]], names[stable[-1]] = attractive, repulsive
+        return np.where(self.stable, names, unstable).tolist()
 
 
 class AmplitudeCurve:

@@ -14,7 +14,7 @@ from softafm.solvers.periodic import PeriodicMemory
 from softafm.solvers.shapes import Shape, on_common_radii
 
 _CHUNK = 256
-_MOST_CYCLES = 300
+_MOST_CYCLES = 150
 _MOST_TRIES_IN_A_FALL = 5000.0
 
 
@@ -51,6 +51,9 @@ class Run:
         self.coarsest = 0.0, 0.0
         self.slips, self.end_of_slip = 0, -np.inf
         self.cycle, self.unsteady = 1, 0.0
+        # How well a memory can be found is limited by the errors of a cycle.
+        self.steadiness = 1e-2 * self.strictness**0.5
+        self.falls: list[float] = []
 
     def steps(self) -> Iterator[float]:
         """Run, yielding the fraction of the motion done at every return of the compiled loop."""
@@ -96,10 +99,12 @@ class Run:
         """
         surface, start = self.surface, self.surface.time
         modes, times = surface.parameters.compliance[1:], surface.parameters.retardation
-        periodic = PeriodicMemory(self.motion.breaks[-1] - start, modes, times)
+        period = self.motion.breaks[-1] - start
+        periodic = PeriodicMemory(period, modes, times, surface.gap_of_tension)
         memory = None
         for self.cycle in range(1, _MOST_CYCLES + 1):
             self.chunks.clear()
+            self.falls.clear()
             if self.shapes is not None:
                 self.shapes.clear()
             yield from self.steps()
@@ -107,7 +112,7 @@ class Run:
             memory = np.zeros_like(gained) if memory is None else memory
             memory, off = periodic.next_start(memory, gained)
             self.unsteady = off / surface.gap_of_tension
-            if self.unsteady <= 1e-2 * self.strictness:
+            if self.unsteady <= self.steadiness:
                 return
             surface.remember(memory)
 
@@ -164,6 +169,7 @@ class Run:
         self._creep_down(end, duration)
         clock[k.TIME], clock[k.STEP] = end, 10 * self.controls.shortest_step
         record = surface.settle()
+        self.falls.append(surface.time)
         if abs(clock[k.AXIS_GAP] - gap) > 0.1 * gap or abs(clock[k.EDGE] - edge) > 0.05 * edge:
             record[k.R_JUMP] = before - surface.energy()
         else:
@@ -238,7 +244,8 @@ class Run:
         records = np.concatenate(self.chunks)
         time, jumped = records[:, k.R_TIME], records[:, k.R_JUMP] != 0
         breaks = np.flatnonzero(np.isin(time, self.motion.breaks[1:-1]))
-        cuts = sorted([(i, i + 1) for i in breaks] + [(i, i) for i in np.flatnonzero(jumped)])
+        fallen = np.flatnonzero(np.isin(time, self.falls))
+        cuts = sorted([(i, i + 1) for i in breaks] + [(i, i) for i in fallen])
         starts = [0] + [start for start, _ in cuts]
         ends = [end for _, end in cuts] + [time.size]
         return History(
@@ -268,6 +275,18 @@ class Run:
         )
 
     def _warnings(self) -> tuple[str, ...]:
+        return (*self._unsteady(), *self._too_coarse())
+
+    def _unsteady(self) -> tuple[str, ...]:
+        if self.unsteady <= self.steadiness:
+            return ()
+        return (
+            f"no steady cycle after {self.cycle}: the surface starts the last one off by up to "
+            f"{self.unsteady:.2g} gaps of largest tension from where it would end. Choose a number "
+            "of cycles instead",
+        )
+
+    def _too_coarse(self) -> tuple[str, ...]:
         coarseness, edge = self.coarsest
         if coarseness <= 1.3 * self.target:
             return ()

@@ -13,6 +13,7 @@ does (Walker and Ni 2011, SIAM Journal on Numerical Analysis 49, 1715).
 import numpy as np
 
 _DEPTH = 4
+_FAR, _PACE = 3.0, 0.3
 
 
 class PeriodicMemory:
@@ -24,9 +25,13 @@ class PeriodicMemory:
         Of the motion, s.
     compliances, retardation_times
         J_m, 1/Pa, and τ_m, s, shape (modes,).
+    unit
+        Length over which contacts change, m. A start that is off by more than three is moved only
+        part of the way, and not mixed: far off, a cycle tells little of the periodic memory.
     """
 
-    def __init__(self, period: float, compliances, retardation_times):
+    def __init__(self, period: float, compliances, retardation_times, unit: float):
+        self._unit, self._pace, self._last = unit, _PACE, np.inf
         self._gaining = -np.expm1(-period / np.asarray(retardation_times))[:, None]
         self._compliances = np.asarray(compliances)[:, None]
         self._trials: list[np.ndarray] = []
@@ -39,10 +44,16 @@ class PeriodicMemory:
         The distance is that of the displacement Σ J_m y_m, largest over the nodes.
         """
         miss = gained / self._gaining - start
+        off = float(np.abs(np.sum(self._compliances * miss, axis=0)).max(initial=0.0))
+        if off > _FAR * self._unit:
+            self._trials.clear()
+            self._misses.clear()
+            self._pace = min(1.1 * self._pace, _PACE) if off < self._last else 0.5 * self._pace
+            self._last = off
+            return start + self._pace * miss, off
         self._trials.append(start)
         self._misses.append(miss)
         del self._trials[: -_DEPTH - 1], self._misses[: -_DEPTH - 1]
-        off = float(np.abs(np.sum(self._compliances * miss, axis=0)).max(initial=0.0))
         return self._mixed(), off
 
     def _mixed(self) -> np.ndarray:
