@@ -2,13 +2,13 @@
 
 import json
 import re
-import shutil
 import stat
 import subprocess
 import sys
 from itertools import pairwise
 from pathlib import Path
 
+import imageio_ffmpeg
 import matplotlib
 import numpy as np
 import pytest
@@ -301,8 +301,11 @@ def test_an_mp4_is_piped_to_ffmpeg_frame_by_frame(tap, tmp_path, stand_in):
     assert noted["arguments"][noted["arguments"].index("-framerate") + 1] == "2.5"
 
 
-@pytest.mark.skipif(shutil.which("ffmpeg") is None, reason="ffmpeg is not installed here")
-def test_the_real_ffmpeg_writes_a_movie(tap, tmp_path):
+def test_the_real_ffmpeg_writes_a_movie(tap, tmp_path, monkeypatch):
+    programs = tmp_path / "programs"
+    programs.mkdir()
+    (programs / "ffmpeg").symlink_to(imageio_ffmpeg.get_ffmpeg_exe())
+    monkeypatch.setenv("PATH", str(programs))
     path = tmp_path / "tap.mp4"
     sa.animate(tap, path, frames=5, seconds=1)
     assert path.read_bytes()[4:8] == b"ftyp"

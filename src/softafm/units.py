@@ -101,7 +101,7 @@ def read_quantity(written: object, kind: Kind) -> float:
 def readable(value: float, unit: str) -> str:
     """Return a value with four digits and a sensible SI prefix, such as ``"-8.609 nN"``."""
     if unit not in _PREFIXED or value == 0 or not isfinite(value):
-        return f"{value:.4g} {unit}".strip()
+        return f"{value:.4g} {unit}".removesuffix(" 1").strip()
     rounded = float(f"{value:.3e}")
     exponent = 3 * floor(log10(abs(rounded)) / 3 + 1e-12)
     exponent = min(max(exponent, min(_PREFIXES)), max(_PREFIXES))

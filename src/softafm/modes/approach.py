@@ -62,8 +62,9 @@ def approach_curve(
     Returns
     -------
     xarray.Dataset
-        Over (``branch``, ``amplitude_ratio``), branch in attractive (stable, phase above 90°),
-        unstable and repulsive (stable, phase below 90°), NaN where there is no solution:
+        Over (``branch``, ``amplitude_ratio``), branch in attractive, unstable and repulsive, NaN
+        where there is no solution (of two stable ones the farther is attractive; one alone is if
+        its phase is above 90°):
         ``mean_height`` Z, ``phase`` (degrees behind the drive), ``virial``, ``dissipation``,
         ``force_mean``, ``force_max``, ``force_min``, ``contact_time``, ``indentation``. Over
         ``sweep_height``, what an instrument records while Z comes down (``approach_...``) and goes
