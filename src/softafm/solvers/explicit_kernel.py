@@ -13,6 +13,8 @@ posed (at nodes, or projected on functions) and in what u is written with:
 
 (carried 0 for an expanded deformation, 1 for an expanded gap). Lengths in m, pressures in Pa, times
 in s.
+
+Functions called once a step are inlined: to hand over so many arrays takes as long as their work.
 """
 
 from math import exp, pi
@@ -170,6 +172,7 @@ WORK = types.NamedTuple(
 @njit(
     boolean(SETUP, pointer(PRESSURE), MATERIAL, CONTROLS, float64, _M, WORK),
     cache=True,
+    inline="always",
     fastmath=_FAST,
 )
 def observe(setup, law, material, controls, height, state, work):
@@ -304,46 +307,40 @@ def rates(setup, material, controls, height, speed, state, out, work, counters):
     return FINISHED
 
 
-@njit(float64(SETUP, pointer(POTENTIAL), MATERIAL, WORK), cache=True, fastmath=_FAST)
-def tip_force(setup, potential, material, work):
-    """Force on the tip as last observed, N.
+@njit(float64(_V, _V, float64, _V, pointer(POTENTIAL), _V, _V), cache=True, fastmath=_FAST)
+def tip_force(area, pressure, gap_at_rim, rim, potential, parameters, scratch):
+    """Force on the tip, N.
 
     The surface beyond the domain, level with its rim, adds its share as for a paraboloid, for which
     r dr = (r²/2g) dh and the integral of p is the potential Φ.
     """
-    n = work.gap.size
     total = 0.0
-    for i in range(n):
-        total += setup.area[i] * work.pressure[i]
-    rim, profile = setup.rim[0], setup.rim[1]
-    work.scratch[0] = work.gap[n - 1] + profile - setup.profile[n - 1]
-    potential(work.scratch, material.law, work.scratch, 1)
-    return total + pi * rim * rim / profile * work.scratch[0]
+    for i in range(area.size):
+        total += area[i] * pressure[i]
+    scratch[0] = gap_at_rim
+    potential(scratch, parameters, scratch, 1)
+    return total + pi * rim[0] * rim[0] / rim[1] * scratch[0]
 
 
 @njit(
     int64(
-        SETUP, pointer(POTENTIAL), MATERIAL, CONTROLS, float64, float64, float64, _M, _M, WORK,
-        int64[::1],
+        SETUP, MATERIAL, CONTROLS, float64, float64, float64, float64, _M, _M, WORK, int64[::1]
     ),
     cache=True,
     fastmath=_FAST,
 )  # fmt: skip
-def rates_under_base(
-    setup, potential, material, controls, height, base, base_speed, state, out, work, counters
+def rates_on_lever(
+    setup, material, controls, height, force, base, base_speed, state, out, work, counters
 ):
-    """Rates of a state under a tip that moves at ``base_speed``, or whose lever's base does.
+    """Rates of a state and, into ``work.tip[1]``, the speed of a tip on a lever, m/s.
 
-    Then ``work.tip[1]`` gets the speed of the tip, m/s. The rates of the surface are linear in it,
-    u̇ = α + β ḣ0, so that with a base that moves at Ż the derivative of k (h0 − Z) = F is one
-    equation for ḣ0:
+    The rates of the surface are linear in that speed, u̇ = α + β ḣ0, so that with a base that moves
+    at Ż the derivative of k (h0 − Z) = F is one equation for ḣ0:
 
         k (ḣ0 − Ż) = 2π ∫ p' (ḣ0 − u̇) r dr − (k (h0 − Z) − F)/10 dt,
 
     where the last term takes back in ten steps what steps leave of k (h0 − Z) − F.
     """
-    if controls.stiffness == 0.0:
-        return rates(setup, material, controls, height, base_speed, state, out, work, counters)
     n = work.gap.size
     outcome = rates(setup, material, controls, height, 0.0, state, work.free, work, counters)
     if outcome != FINISHED:
@@ -368,8 +365,7 @@ def rates_under_base(
     if resisting < 0.0:
         counters[BEYOND_FOLD] += 1
     else:
-        left = controls.stiffness * (height - base) - tip_force(setup, potential, material, work)
-        driving -= left / (10.0 * controls.step)
+        driving -= (controls.stiffness * (height - base) - force) / (10.0 * controls.step)
     speed = driving / resisting
     work.tip[1] = speed
     rows, width = state.shape
@@ -381,14 +377,17 @@ def rates_under_base(
 
 
 @njit(
-    (SETUP, pointer(POTENTIAL), MATERIAL, CONTROLS, float64, WORK, _V), cache=True, fastmath=_FAST
+    (SETUP, MATERIAL, CONTROLS, float64, float64, WORK, _V),
+    cache=True,
+    inline="always",
+    fastmath=_FAST,
 )
-def note(setup, potential, material, controls, height, work, record):
+def note(setup, material, controls, height, force, work, record):
     """Write height, force, contact radius, axis deformation and viscous power of a surface with
     rates."""
     n = work.gap.size
     record[R_HEIGHT] = height
-    record[R_FORCE] = tip_force(setup, potential, material, work)
+    record[R_FORCE] = force
     record[R_AXIS] = setup.axis[0] * work.displacement[0] + setup.axis[1] * work.displacement[1]
 
     edge = setup.radius[n - 1]
@@ -417,20 +416,16 @@ def note(setup, potential, material, controls, height, work, record):
     record[R_LOSS] = loss
 
 
-@njit((MATERIAL, WORK), cache=True, fastmath=_FAST)
-def filter_pressure(material, work):
-    """Carry w_m, τ_m ẇ_m = p − w_m, over the last step, the pressure linear in time."""
-    step = work.step_before[0]
-    for m in range(material.retardation.size):
-        k = step / material.retardation[m]
+@njit((float64, _V, _V, _V, _M), cache=True, fastmath=_FAST)
+def filter_pressure(step, retardation, before, pressure, filtered):
+    """Carry w_m, τ_m ẇ_m = p − w_m, over a step in which the pressure is linear in time."""
+    for m in range(retardation.size):
+        k = step / retardation[m]
         decay = exp(-k)
         mean = 1.0 - k / 2.0 + k * k / 6.0 if k < 1e-4 else (1.0 - decay) / k
-        filtered = work.filtered[m]
-        for i in range(filtered.size):
-            filtered[i] = (
-                decay * filtered[i]
-                + (mean - decay) * work.pressure_before[i]
-                + (1.0 - mean) * work.pressure[i]
+        for i in range(pressure.size):
+            filtered[m, i] = (
+                decay * filtered[m, i] + (mean - decay) * before[i] + (1.0 - mean) * pressure[i]
             )
 
 
@@ -458,23 +453,37 @@ def march(
     instants = heights.size // 2
     lever = controls.stiffness > 0.0
     tip, past_tip = work.tip, work.past_tip
+    last = work.gap.size - 1
+    below_rim = setup.rim[1] - setup.profile[last]
     while counters[INSTANT] < stop:
         instant = counters[INSTANT]
         height = tip[0] if lever else heights[2 * instant]
         if not observe(setup, law, material, controls, height, state, work):
             return BLOWN_UP
-        filter_pressure(material, work)
+        filter_pressure(
+            work.step_before[0], material.retardation, work.pressure_before, work.pressure,
+            work.filtered,
+        )  # fmt: skip
         work.pressure_before[:] = work.pressure
+        force = tip_force(
+            setup.area, work.pressure, work.gap[last] + below_rim, setup.rim, potential,
+            material.law, work.scratch,
+        )  # fmt: skip
         now = past[instant % ring]
         now[:] = past[(instant - 1) % ring]
-        outcome = rates_under_base(
-            setup, potential, material, controls, height, heights[2 * instant],
-            speeds[2 * instant], state, now, work, counters,
-        )  # fmt: skip
+        if lever:
+            outcome = rates_on_lever(
+                setup, material, controls, height, force, heights[2 * instant],
+                speeds[2 * instant], state, now, work, counters,
+            )  # fmt: skip
+        else:
+            outcome = rates(
+                setup, material, controls, height, speeds[2 * instant], state, now, work, counters
+            )
         if outcome != FINISHED:
             return outcome
         past_tip[instant % ring] = tip[1]
-        note(setup, potential, material, controls, height, work, records[instant])
+        note(setup, material, controls, height, force, work, records[instant])
         if shapes.shape[0] > 0:
             shapes[instant] = work.displacement
         counters[PAST] += 1
@@ -499,10 +508,20 @@ def march(
                 if not observe(setup, law, material, controls, height, work.trial, work):
                     return BLOWN_UP
                 stages[stage] = stages[stage - 1]
-                outcome = rates_under_base(
-                    setup, potential, material, controls, height, heights[at], speeds[at],
-                    work.trial, stages[stage], work, counters,
-                )  # fmt: skip
+                if lever:
+                    force = tip_force(
+                        setup.area, work.pressure, work.gap[last] + below_rim, setup.rim, potential,
+                        material.law, work.scratch,
+                    )  # fmt: skip
+                    outcome = rates_on_lever(
+                        setup, material, controls, height, force, heights[at], speeds[at],
+                        work.trial, stages[stage], work, counters,
+                    )  # fmt: skip
+                else:
+                    outcome = rates(
+                        setup, material, controls, height, speeds[at],
+                        work.trial, stages[stage], work, counters,
+                    )  # fmt: skip
                 if outcome != FINISHED:
                     return outcome
                 climb += 2.0 * tip[1] if stage < 3 else tip[1]
