@@ -9,6 +9,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from softafm.errors import AccuracyWarning, DivergedError
+from softafm.motions import lowest_height
 from softafm.solvers import explicit_kernel as k
 from softafm.solvers.history import History, Profiles
 
@@ -44,11 +45,9 @@ def default_domain(contact, motion) -> float:
     """Radius of the computational domain, m: the largest contact expected and what acts around it.
 
     The contact is that of the relaxed JKR theory at the lowest tip height. Around it the domain
-    reaches to where the tip of a flat surface is 12 equilibrium gaps farther away.
+    reaches to where the tip has risen by 12 equilibrium gaps, or thrice its lowest height.
     """
-    instants = np.concatenate([motion.breaks, motion.landmarks])
-    lowest = float(np.min(motion.height(instants)))
-    law = contact.surface
+    lowest, law = lowest_height(motion), contact.surface
     reach = max(12 * law.equilibrium_gap, 3 * lowest)
     edge = contact.contact_radius(lowest)
     return float(np.sqrt(edge**2 + 2 * contact.tip.radius * reach))
