@@ -15,6 +15,7 @@ from softafm.solvers.shapes import Shape, on_common_radii
 
 _CHUNK = 256
 _MOST_CYCLES = 150
+_PATIENCE = 8
 _MOST_TRIES_IN_A_FALL = 5000.0
 
 
@@ -101,7 +102,7 @@ class Run:
         modes, times = surface.parameters.compliance[1:], surface.parameters.retardation
         period = self.motion.breaks[-1] - start
         periodic = PeriodicMemory(period, modes, times, surface.gap_of_tension)
-        memory = None
+        memory, misses = None, []
         for self.cycle in range(1, _MOST_CYCLES + 1):
             self.chunks.clear()
             self.falls.clear()
@@ -112,7 +113,8 @@ class Run:
             memory = np.zeros_like(gained) if memory is None else memory
             memory, off = periodic.next_start(memory, gained)
             self.unsteady = off / surface.gap_of_tension
-            if self.unsteady <= self.steadiness:
+            misses.append(self.unsteady)
+            if self.unsteady <= self.steadiness or _stagnates(misses):
                 return
             surface.remember(memory)
 
@@ -305,3 +307,11 @@ class Run:
             "LennardJones.from_work_of_adhesion("
             f"W={law.work_of_adhesion:.4g}, z0={z0:.2g})",
         )
+
+
+def _stagnates(misses: list[float]) -> bool:
+    """Whether misses, in gaps, are small and fall no more: what is left are errors of a cycle."""
+    if len(misses) < 2 * _PATIENCE or misses[-1] > 1:
+        return False
+    before, recent = misses[-2 * _PATIENCE : -_PATIENCE], misses[-_PATIENCE:]
+    return min(recent) > 0.5 * min(before)
