@@ -141,32 +141,11 @@ CONTROLS = types.NamedTuple(
 )
 WORK = types.NamedTuple(
     (
-        _V,
-        _V,
-        _V,
-        _V,
-        _V,
-        _V,
-        _M,
-        _M,
-        _V,
-        _V,
-        _V,
-        _V,
-        _V,
-        _M,
-        _M,
-        _M,
-        _M,
-        _CUBE,
-        _M,
-        _M,
-        _V,
-        _V,
+        _V, _V, _V, _V, _V, _V, _M, _M, _V, _V, _V, _V, _V, _M, _M, _M, _M, _CUBE, _M, _M, _V, _V,
         int64[::1],
     ),
     Work,
-)
+)  # fmt: skip
 
 
 @njit(
