@@ -328,3 +328,20 @@ def test_bad_numbers_are_refused(name, bad):
     arguments = {"free_amplitude": FREE, "amplitude_ratio": [0.5], name: bad}
     with pytest.raises(ValueError, match=f"^{name} = "):
         sa.approach_curve(PS, LEVER, **arguments)
+
+
+@pytest.mark.parametrize(
+    ("lever", "ratios", "line"),
+    [
+        (28.1, [0.9], r"^cantilever = 28\.1: must be a softafm\.Cantilever$"),
+        (sa.Cantilever(28.1, 430, 278e3), "0.9", r"^amplitude_ratio = '0\.9': must be a list"),
+        (sa.Cantilever(28.1, 430, 278e3), [0.9, None], r"^amplitude_ratio\[1\] = nan"),
+        (sa.Cantilever(28.1, 430, 278e3), [0.9, "x"], r"^amplitude_ratio = \[0\.9, 'x'\]: must"),
+    ],
+)
+def test_what_is_no_lever_or_no_ratio_is_refused(lever, ratios, line):
+    contact = sa.Contact(
+        sa.Paraboloid(1e-8), sa.Elastic(1e9, 0.3), sa.LennardJones(hamaker=1e-19, z0=3e-10)
+    )
+    with pytest.raises(ValueError, match=line):
+        sa.approach_curve(contact, lever, 15e-9, ratios)

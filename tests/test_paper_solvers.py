@@ -561,11 +561,12 @@ def test_a_lever_bends_as_with_the_default_solver(solver):
         SMOOTH_TAP.tip, sa.StandardLinearSolid(2.5e9, 0.3e9, 1e-5, 0.45), SMOOTH_TAP.surface
     )
     motion, lever = sa.Triangle(10e-9, -4e-9, 1e-3), sa.Cantilever(100.0)
-    longer = dataclasses.replace(solver, steps=8000, nodes=60, domain=16e-9)
+    finer = {"functions": 25} if isinstance(solver, solvers.EnhancedAttard) else {}
+    longer = dataclasses.replace(solver, steps=8000, nodes=60, domain=16e-9, **finer)
     found = sa.force_spectroscopy(contact, lever, motion, solver=longer)
     expected = sa.force_spectroscopy(contact, lever, motion, tolerance=1e-3)
     for name in ("force_max", "force_min", "force_min_approach", "loop_energy"):
-        assert float(found[name]) == pytest.approx(float(expected[name]), rel=0.02), name
+        assert float(found[name]) == pytest.approx(float(expected[name]), rel=5e-3), name
     unbalanced = lever.stiffness * found.deflection - found.force
     assert float(np.abs(unbalanced).max()) < 2e-3 * float(found.force_max)
 

@@ -13,6 +13,7 @@ from softafm.cantilever import Cantilever
 from softafm.contact import Contact
 from softafm.errors import AccuracyWarning
 from softafm.modes.amplitude_curve import BRANCHES, AmplitudeCurve, Solutions
+from softafm.modes.start import refuse_other_than_cantilever
 from softafm.modes.tap_map import OBSERVABLES, TapMap
 from softafm.modes.tapping import tap_observables
 from softafm.motions import Sine
@@ -80,6 +81,7 @@ def approach_curve(
     """
     tolerance = tolerance_of(tolerance)
     solver = Energy() if solver is None else solver
+    refuse_other_than_cantilever(cantilever)
     ratios = _ratios(amplitude_ratio)
     free_amplitude = positive("free_amplitude", free_amplitude, "m")
     drive, frequency = drive_of(cantilever, free_amplitude, drive_frequency)
@@ -196,7 +198,12 @@ def _tables(curve: AmplitudeCurve, ratios, found: Solutions):
 
 def _ratios(values) -> np.ndarray:
     """Return amplitude ratios as an array, or raise ValueError naming the one that is not."""
-    array = np.atleast_1d(np.asarray(values, float))
+    try:
+        if isinstance(values, str | bytes):
+            raise TypeError
+        array = np.atleast_1d(np.asarray(values, float))
+    except (TypeError, ValueError):
+        raise ValueError(f"amplitude_ratio = {values!r}: must be a list of numbers") from None
     if array.ndim != 1 or array.size == 0:
         raise ValueError(f"amplitude_ratio has shape {array.shape}: must be a list of numbers")
     for i, value in enumerate(array):

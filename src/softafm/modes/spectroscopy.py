@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING
 from softafm.cantilever import Cantilever
 from softafm.contact import Contact
 from softafm.modes.force_distance import ramp_observables
-from softafm.modes.start import carry
+from softafm.modes.start import carry, refuse_other_than_cantilever
 from softafm.motions import Sine, Trajectory, Triangle
 from softafm.progress import Progress
 from softafm.results import dataset
@@ -55,8 +55,7 @@ def force_spectroscopy(
     DivergedError
         If the solver cannot continue.
     """
-    if not isinstance(cantilever, Cantilever):
-        raise ValueError(f"cantilever = {cantilever!r}: must be a softafm.Cantilever")
+    refuse_other_than_cantilever(cantilever)
     solver, tolerance, history = carry(
         contact, motion, solver, tolerance, profiles, progress, stiffness=cantilever.stiffness
     )

@@ -1,6 +1,7 @@
 """What all modes begin with: checks, and a run of the solver."""
 
 from softafm._validate import tolerance_of
+from softafm.cantilever import Cantilever
 from softafm.progress import reporting
 from softafm.solvers.energy import Energy
 
@@ -19,6 +20,12 @@ def carry(contact, motion, solver, tolerance, profiles, progress, **options):
             contact, motion, tolerance=tolerance, profiles=profiles, progress=report, **options
         )
     return solver, tolerance, history
+
+
+def refuse_other_than_cantilever(cantilever) -> None:
+    """Raise ValueError if it is not a ``Cantilever``."""
+    if not isinstance(cantilever, Cantilever):
+        raise ValueError(f"cantilever = {cantilever!r}: must be a softafm.Cantilever")
 
 
 def refuse_start_inside(contact, motion) -> None:
