@@ -1,76 +1,20 @@
 """What touches: tip, sample and the law between them, and the scales that follow."""
 
 from dataclasses import dataclass
-from math import pi
-from typing import TYPE_CHECKING, Protocol
+from functools import cached_property
+from math import inf, pi, sqrt
+from typing import TYPE_CHECKING
 
 import numpy as np
 
-from softafm.rheology import ReducedCompliance
-
 if TYPE_CHECKING:
-    from softafm.compiled import CompiledFunction
+    from softafm.rheology import Solid
+    from softafm.surfaces import SurfaceLaw
+    from softafm.tips import Tip
 
-
-class Tip(Protocol):
-    """What a contact and its solver ask of a tip, e.g. ``Paraboloid``."""
-
-    @property
-    def kind(self) -> str:
-        """Name of the shape, kept with every result."""
-
-    @property
-    def radius(self) -> float:
-        """Radius of curvature at the apex, m."""
-
-    def profile(self, r):
-        """Height of the tip surface above its apex at radial coordinate ``r``, m."""
-
-    @property
-    def compiled_profile(self) -> "tuple[CompiledFunction, np.ndarray]":
-        """The profile for solvers, and its parameters (see ``softafm.compiled.PROFILE``)."""
-
-
-class Sample(Protocol):
-    """What a contact and its solver ask of a sample, e.g. ``StandardLinearSolid``."""
-
-    @property
-    def kind(self) -> str:
-        """Name of the rheology, kept with every result."""
-
-    @property
-    def reduced_compliance(self) -> ReducedCompliance:
-        """Creep compliance with the factor 1 − ν² inside, 1/Pa."""
-
-
-class Surface(Protocol):
-    """What a contact and its solver ask of a law between two surfaces, e.g. ``LennardJones``."""
-
-    @property
-    def kind(self) -> str:
-        """Name of the law, kept with every result."""
-
-    @property
-    def work_of_adhesion(self) -> float:
-        """Work per area to separate the surfaces from the equilibrium gap, J/m²."""
-
-    @property
-    def equilibrium_gap(self) -> float:
-        """Gap of zero pressure, m."""
-
-    @property
-    def gap_of_largest_tension(self) -> float:
-        """Gap where the attraction is strongest, m."""
-
-    def pressure(self, gap):
-        """Pressure at ``gap`` (m), positive = repulsive, Pa."""
-
-    def potential(self, gap):
-        """Interaction energy per area Φ at ``gap`` (m), J/m²; Φ' = −p."""
-
-    @property
-    def compiled_pressure(self) -> "tuple[CompiledFunction, CompiledFunction, np.ndarray]":
-        """p and Φ for solvers, and their parameters (see ``softafm.compiled``)."""
+_ZOOMS, _POINTS = 9, 33
+_SOFT = 1e-3
+"""Share of the modulus to which the repulsion of a law without attraction falls at the edge."""
 
 
 @dataclass(frozen=True)
@@ -87,9 +31,9 @@ class Contact:
         Pressure against gap, e.g. ``LennardJones``.
     """
 
-    tip: Tip
-    sample: Sample
-    surface: Surface
+    tip: "Tip"
+    sample: "Solid"
+    surface: "SurfaceLaw"
 
     @property
     def _modulus_instantaneous(self) -> float:
@@ -99,9 +43,55 @@ class Contact:
     def _modulus_relaxed(self) -> float:
         return 1 / self.sample.reduced_compliance.relaxed
 
+    @property
+    def adhesive(self) -> bool:
+        """Whether it takes work to part the surfaces."""
+        return self.surface.attracts and self.surface.work_of_adhesion > 0
+
+    @cached_property
+    def edge_gap(self) -> float:
+        """Gap at the edge of the contact, m: that of largest tension.
+
+        Without attraction that at which the repulsion has fallen to a thousandth of the relaxed
+        modulus, or of the short-term modulus of a sample that flows.
+        """
+        if self.surface.attracts:
+            return self.surface.gap_of_largest_tension
+        low, high = 1e-12, 1e-6
+        least = _SOFT * (self._modulus_relaxed or self._modulus_instantaneous)
+        for _ in range(60):
+            middle = sqrt(low * high)
+            low, high = (middle, high) if self.surface.pressure(middle) > least else (low, middle)
+        return low
+
+    @cached_property
+    def reach(self) -> float:
+        """Distance over which the pressure changes at the edge of the contact, m.
+
+        The range of the attraction, or of a law that only repels the length in which it decays.
+        """
+        if self.adhesive:
+            return self.surface.range
+        gap = self.edge_gap
+        if self.surface.attracts:
+            return gap
+        return -float(self.surface.pressure(gap) / self.surface.slope(gap))
+
+    @cached_property
+    def effective_radius(self) -> float:
+        """Radius of the paraboloid that rises as high as the tip where its height is one reach, m.
+
+        It takes the place of the radius of curvature for tips that are no paraboloids.
+        """
+        return self.tip.radius_at(self.reach) ** 2 / (2 * self.reach)
+
     def _tabor(self, modulus: float) -> float:
-        W, z0 = self.surface.work_of_adhesion, self.surface.equilibrium_gap
-        return (self.tip.radius * W**2 / (modulus**2 * z0**3)) ** (1 / 3)
+        if not self.adhesive:
+            return 0.0
+        if modulus == 0:
+            return inf
+        W, z0 = self.surface.work_of_adhesion, self.surface.range
+        return (self.effective_radius * W**2 / (modulus**2 * z0**3)) ** (1 / 3)
 
     @property
     def tabor_instantaneous(self) -> float:
@@ -117,7 +107,9 @@ class Contact:
         return self._tabor(self._modulus_relaxed)
 
     def _cohesive_length(self, modulus: float) -> float:
-        return modulus * self.surface.equilibrium_gap**2 / self.surface.work_of_adhesion
+        if not self.adhesive:
+            return inf
+        return modulus * self.surface.range**2 / self.surface.work_of_adhesion
 
     @property
     def cohesive_length(self) -> float:
@@ -129,25 +121,79 @@ class Contact:
         """Width ℓ = E z0²/W of the tension zone at the short-term modulus, m."""
         return self._cohesive_length(self._modulus_instantaneous)
 
+    def rigid_force(self, tip_height):
+        """Force at tip heights (m) above a flat surface that does not deform, N.
+
+        2π ∫ p(h0 + g) r dr; of a paraboloid 2πRΦ(h0) (Derjaguin 1934).
+        """
+        height = np.asarray(tip_height, float)[..., None]
+        r, weight = self._radial_rule
+        return 2 * pi * self.surface.pressure(height + self.tip.profile(r)) @ weight
+
+    @cached_property
+    def _radial_rule(self) -> tuple[np.ndarray, np.ndarray]:
+        """Radii and weights of ∫ f r dr over all that the surface forces reach."""
+        points, weights = np.polynomial.legendre.leggauss(10)
+        start = self.tip.radius_at(0.01 * self.reach)
+        edges = start * np.concatenate([[0], np.geomspace(1, 1e5, 101)])
+        middle, half = (edges[1:] + edges[:-1]) / 2, np.diff(edges) / 2
+        r = middle[:, None] + half[:, None] * points
+        return r.ravel(), (half[:, None] * weights * r).ravel()
+
     @property
     def steepest_attraction(self) -> float:
-        """Largest slope of the attraction on the flat surface, 2πR·max(−p), N/m.
+        """Largest slope of the attraction on a surface that does not deform, N/m.
 
-        By Derjaguin F = 2πRΦ(h0), so dF/dh0 = −2πRp(h0). A lever softer than this snaps in.
+        A lever softer than this snaps in. 0 of a law that only repels.
         """
-        tension = -float(self.surface.pressure(self.surface.gap_of_largest_tension))
-        return 2 * pi * self.tip.radius * tension
+        if not self.surface.attracts:
+            return 0.0
+        r, weight = self._radial_rule
+        height = self.edge_gap * np.geomspace(0.5, 20, 400)[:, None]
+        slopes = 2 * pi * self.surface.slope(height + self.tip.profile(r)) @ weight
+        return max(0.0, float(slopes.max()))
 
     def contact_radius(self, tip_height: float) -> float:
         """Radius of the relaxed contact expected at a tip height (m, negative = indented), m.
 
-        The stable branch of JKR (Johnson, Kendall and Roberts 1971),
-        −h0 = a²/R − sqrt(2πaW/E_inf); zero where no contact exists. With a = s²·a_c, where a_c is
-        the smallest stable radius, s⁴ − 4s + R·h0/a_c² = 0 and s ≥ 1.
+        The stable branch of JKR (Johnson, Kendall and Roberts 1971) for any profile (Maugis and
+        Barquins 1983), −h0 = δ(a) − sqrt(2πaW/E_inf) with δ(a) = a ∫ g'(r)/√(a² − r²) dr, that is
+        a²/R of a paraboloid; zero where no contact exists. A sample that flows counts with its
+        short-term modulus.
         """
-        R, W = self.tip.radius, self.surface.work_of_adhesion
-        smallest = (pi * R**2 * W / (8 * self._modulus_relaxed)) ** (1 / 3)
-        height = R * tip_height / smallest**2
-        if height > 3:
+        depth = -tip_height
+        low, shallowest = self._last_contact
+        if depth < shallowest:
             return 0.0
-        return smallest * max(1.0, float(np.roots([1, 0, 0, -4, height]).real.max())) ** 2
+        high = 2 * low
+        while self._relaxed_depth(np.array([high]))[0] < depth:
+            low, high = high, 2 * high
+        for _ in range(_ZOOMS):
+            radius = np.linspace(low, high, _POINTS)
+            above = np.flatnonzero(self._relaxed_depth(radius) >= depth)[:1]
+            last = above[0] if above.size else _POINTS - 1
+            low, high = radius[max(last - 1, 0)], radius[last]
+        return float(high)
+
+    @cached_property
+    def _last_contact(self) -> tuple[float, float]:
+        """Radius of the smallest stable relaxed contact, and the depth of the tip there, m."""
+        radius = self.tip.radius_at(self.reach) * np.geomspace(1e-6, 1e6, 20 * _POINTS)
+        for _ in range(_ZOOMS):
+            depth = self._relaxed_depth(radius)
+            least = np.clip(depth.argmin(), 1, radius.size - 2)
+            radius = np.linspace(radius[least - 1], radius[least + 1], _POINTS)
+        depth = self._relaxed_depth(radius)
+        return float(radius[depth.argmin()]), float(depth.min())
+
+    def _relaxed_depth(self, radius: np.ndarray) -> np.ndarray:
+        """Depth of the tip, m, in relaxed contacts of some radii, m, shape (n,)."""
+        points, weights = np.polynomial.legendre.leggauss(16)
+        r = radius[:, None] * np.sin(pi / 4 * (points + 1))
+        step = 1e-4 * r
+        slope = (self.tip.profile(r + step) - self.tip.profile(r - step)) / (2 * step)
+        depth = radius * (slope @ weights) * pi / 4
+        if self.adhesive:
+            modulus = self._modulus_relaxed or self._modulus_instantaneous
+            depth -= np.sqrt(2 * pi * radius * self.surface.work_of_adhesion / modulus)
+        return depth

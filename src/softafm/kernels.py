@@ -1,40 +1,8 @@
-"""Compiled tip profiles, surface laws and motions, called by the solvers' hot loops."""
+"""Compiled motions, called by the solvers' hot loops."""
 
 from math import cos, pi
 
-from softafm.compiled import HEIGHT, POTENTIAL, PRESSURE, PROFILE, compiled
-
-
-@compiled(PROFILE)
-def paraboloid(radius, parameters, profile, n):
-    curvature = 0.5 / parameters[0]
-    for i in range(n):
-        profile[i] = curvature * radius[i] * radius[i]
-
-
-@compiled(PRESSURE)
-def lennard_jones_pressure(gap, parameters, pressure, slope, n):
-    strength = parameters[0] / (6 * pi)
-    z0 = parameters[1]
-    for i in range(n):
-        inverse = 1 / gap[i]
-        attraction = strength * inverse * inverse * inverse
-        ratio = z0 * inverse
-        cube = ratio * ratio * ratio
-        repulsion = attraction * cube * cube
-        pressure[i] = repulsion - attraction
-        slope[i] = (3 * attraction - 9 * repulsion) * inverse
-
-
-@compiled(POTENTIAL)
-def lennard_jones_potential(gap, parameters, potential, n):
-    strength = parameters[0] / (12 * pi)
-    z0 = parameters[1]
-    for i in range(n):
-        inverse = 1 / gap[i]
-        ratio = z0 * inverse
-        cube = ratio * ratio * ratio
-        potential[i] = strength * inverse * inverse * (0.25 * cube * cube - 1)
+from softafm.compiled import HEIGHT, compiled
 
 
 @compiled(HEIGHT)

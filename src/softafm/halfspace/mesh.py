@@ -35,6 +35,10 @@ class UnitMesh(NamedTuple):
     """δ, node spacing at ξ = 1."""
     growth: float
     """g, logarithmic growth of the spacing per node."""
+    far: np.ndarray
+    """Radii beyond the last node, shape (far,)."""
+    far_masses: np.ndarray
+    """∫ f s ds from the last node to infinity = Σ far_masses·f(far), shape (far,)."""
 
 
 def node_index(radius, edge_spacing: float, growth: float):
@@ -89,6 +93,17 @@ def unit_mesh(edge_spacing: float, growth: float, extent: float) -> UnitMesh:
     masses = _masses(nodes, spacing)
     stiffness = np.linalg.inv(influence(nodes, spacing, masses))
     stiffness = (stiffness + stiffness.T) / 2
-    for array in (nodes, masses, stiffness):
+    far, far_masses = beyond(nodes[-1])
+    for array in (nodes, masses, stiffness, far, far_masses):
         array.setflags(write=False)
-    return UnitMesh(nodes, masses, stiffness, edge_spacing, growth)
+    return UnitMesh(nodes, masses, stiffness, edge_spacing, growth, far, far_masses)
+
+
+def beyond(end: float) -> tuple[np.ndarray, np.ndarray]:
+    """Radii and weights of ∫ f s ds from ``end`` to infinity, for f that falls faster than 1/s².
+
+    Gauss-Legendre in end/s: exact for f = s^-3 to s^-18.
+    """
+    points, weights = np.polynomial.legendre.leggauss(8)
+    inverse = (1 + points) / 2
+    return end / inverse, end**2 * weights / 2 / inverse**3

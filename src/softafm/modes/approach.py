@@ -13,7 +13,7 @@ from softafm.cantilever import Cantilever
 from softafm.contact import Contact
 from softafm.errors import AccuracyWarning
 from softafm.modes.amplitude_curve import BRANCHES, AmplitudeCurve, Solutions
-from softafm.modes.start import refuse_other_than_cantilever
+from softafm.modes.start import refuse_other_than_cantilever, refuse_steady_flow
 from softafm.modes.tap_map import OBSERVABLES, TapMap
 from softafm.modes.tapping import tap_observables
 from softafm.motions import Sine
@@ -82,6 +82,7 @@ def approach_curve(
     tolerance = tolerance_of(tolerance)
     solver = Energy() if solver is None else solver
     refuse_other_than_cantilever(cantilever)
+    refuse_steady_flow(contact)
     ratios = _ratios(amplitude_ratio)
     free_amplitude = positive("free_amplitude", free_amplitude, "m")
     drive, frequency = drive_of(cantilever, free_amplitude, drive_frequency)
@@ -94,7 +95,7 @@ def approach_curve(
 
     taps = TapMap(
         tap, drive.excess, ratios.min() * free_amplitude, ratios.max() * free_amplitude,
-        contact.surface.equilibrium_gap, tolerance,
+        contact.reach, tolerance,
     )  # fmt: skip
     with reporting(progress) as report:
         for done in taps.explore():
@@ -140,7 +141,7 @@ def deepest_tap(contact: Contact, drive: Drive, frequency: float, amplitudes) ->
     amplitudes = np.asarray(amplitudes, float)
     mean_force = drive.strongest_push(amplitudes) / 2
     compliance = contact.sample.reduced_compliance.relaxed
-    depth = np.sqrt(4 * compliance * mean_force / np.sqrt(2 * contact.tip.radius / amplitudes))
+    depth = np.sqrt(4 * compliance * mean_force / np.sqrt(2 * contact.effective_radius / amplitudes))
     deepest = depth.argmax()
     amplitude = float(amplitudes[deepest])
     return Sine(amplitude - float(depth[deepest]), amplitude, frequency, "steady")

@@ -14,6 +14,8 @@ def carry(contact, motion, solver, tolerance, profiles, progress, **options):
     tolerance = tolerance_of(tolerance)
     solver = Energy() if solver is None else solver
     refuse_start_inside(contact, motion)
+    if getattr(motion, "steady", False):
+        refuse_steady_flow(contact)
     refuse_unable(solver, motion)
     with reporting(progress) as report:
         history = solver.solve(
@@ -36,11 +38,22 @@ def refuse_start_inside(contact, motion) -> None:
     if getattr(motion, "steady", False):
         return
     start = float(motion.height(motion.breaks[0]))
-    gap = contact.surface.equilibrium_gap
+    gap, name = contact.edge_gap, "gap at which the surfaces touch"
+    if contact.surface.attracts:
+        gap, name = contact.surface.equilibrium_gap, "equilibrium gap"
     if start <= gap:
         raise ValueError(
-            f"start height = {start:g} m: must be above the equilibrium gap, {gap:g} m "
+            f"start height = {start:g} m: must be above the {name}, {gap:g} m "
             "(the tip would start inside the surface)"
+        )
+
+
+def refuse_steady_flow(contact) -> None:
+    """Raise ValueError if the sample flows, so that no cycle is like the one before."""
+    if contact.sample.reduced_compliance.fluidity > 0:
+        raise ValueError(
+            f"cycles = 'steady': the sample '{contact.sample.kind}' flows, so that the tip sinks "
+            "deeper with every cycle; give a number of cycles"
         )
 
 

@@ -91,7 +91,7 @@ def tap_observables(contact, motion, history) -> dict[str, tuple]:
         "force_mean": ((), history.integrate(force, np.ones_like, start) / period),
         "contact_time": (
             (),
-            time_below(history.time[last], axis_gap[last], contact.surface.gap_of_largest_tension),
+            time_below(history.time[last], axis_gap[last], contact.edge_gap),
         ),
         "indentation": ((), max(0.0, -history.axis_deformation[last].min())),
         "viscous_loss": ((), history.integrate(history.viscous_power, np.ones_like, start)),

@@ -106,6 +106,7 @@ class Attard:
             from softafm.solvers.explicit_run import (
                 Discretisation,
                 Iteration,
+                beyond_domain,
                 default_domain,
                 march,
             )
@@ -114,6 +115,7 @@ class Attard:
         segments = grid(self.nodes, "midpoint")
         radius = domain * segments.radius
         profile = contact.tip.profile(radius)
+        far_rise, far_area = beyond_domain(contact.tip, domain, radius[-1])
         setup = k.Setup(
             kind=k.ITERATIVE if self.method == "iterative" else k.NODAL,
             carried=0.0,
@@ -125,14 +127,15 @@ class Attard:
             profile_image=profile,
             radius=radius,
             area=2 * np.pi * domain * radius * segments.weight,
-            rim=np.array([domain, contact.tip.profile(domain)]),
+            far_rise=far_rise,
+            far_area=far_area,
             axis=np.array([9 / 8, -1 / 8]),
         )
         iteration = Iteration(
             self.iteration_tolerance, self.relaxation or 0.0, self.most_iterations
         )
         return march(
-            Discretisation(setup, np.zeros(self.nodes)), contact, motion, self,
+            Discretisation(setup, np.zeros(self.nodes), domain), contact, motion, self,
             stiffness=stiffness, tolerance=tolerance, iteration=iteration, profiles=profiles,
             progress=progress,
         )  # fmt: skip

@@ -54,6 +54,9 @@ CLOCK_SIZE = 20
 R_TIME, R_HEIGHT, R_FORCE, R_EDGE, R_AXIS, R_LOSS, R_COARSENESS, R_FRAME, R_JUMP = range(9)
 RECORD_WIDTH = 9
 
+# Entry of the law's parameters: where its gaps are counted from. The solver's gaps are above it.
+ORIGIN = 0
+
 # Columns of the memory weights.
 _DECAY, _EARLIER, _NOW, _NEW, _CURVATURE = range(5)
 
@@ -66,6 +69,8 @@ class Mesh(NamedTuple):
     stiffness: np.ndarray
     edge_spacing: float
     growth: float
+    far: np.ndarray
+    far_masses: np.ndarray
 
 
 class Parameters(NamedTuple):
@@ -112,7 +117,7 @@ class Controls(NamedTuple):
     longest_step: float
     top_speed: float
     open_frame: float
-    gap_of_tension: float
+    edge_gap: float
     prediction: float
     memory: float
     force: float
@@ -124,7 +129,7 @@ class Controls(NamedTuple):
     trigger: float
 
 
-MESH = types.NamedTuple((_CONST, _CONST, _CONST2, float64, float64), Mesh)
+MESH = types.NamedTuple((_CONST, _CONST, _CONST2, float64, float64, _CONST, _CONST), Mesh)
 PARAMETERS = types.NamedUniTuple(_V, len(Parameters._fields), Parameters)
 BACKGROUND = types.NamedTuple((_M, float64, float64, float64, float64, float64), Background)
 CONTROLS = types.NamedUniTuple(float64, len(Controls._fields), Controls)
@@ -200,36 +205,42 @@ def _assemble(mesh, scale, slope, shift, lever, hessian):
     hessian[n, n] = total + shift
 
 
-@njit((_V, _V, float64, pointer(POTENTIAL), _V, _V), cache=True, fastmath=_FAST)
-def _beyond_mesh(gap, pressure, beyond, potential, parameters, scratch):
+@njit((float64, _V, MESH, pointer(PRESSURE), _V, _M), cache=True, fastmath=_FAST)
+def beyond_mesh(gap, rise, mesh, law, parameters, work):
     """Force that acts beyond the last node and minus its derivative with the gap, both over 2πa².
 
-    There, where the profile is g, r dr = (r²/2g) dh on a paraboloid, and the integral of p is Φ.
+    ``gap`` is that at the last node. There the surface counts as flat, and the gap grows by
+    ``rise`` (far,), as the tip does. ``work`` has three rows.
     """
-    last = gap.size - 1
-    scratch[0] = gap[last]
-    potential(scratch, parameters, scratch, 1)
-    return beyond * scratch[0], beyond * pressure[last]
+    n = rise.size
+    for i in range(n):
+        work[0, i] = gap + rise[i]
+    law(work[0], parameters, work[1], work[2], n)
+    force, stiffness = 0.0, 0.0
+    for i in range(n):
+        force += mesh.far_masses[i] * work[1, i]
+        stiffness -= mesh.far_masses[i] * work[2, i]
+    return force, stiffness
 
 
 @njit(
     int64(
-        _V, _V, float64, _V, float64, float64, float64,
-        MESH, pointer(PRESSURE), pointer(POTENTIAL), _V, float64, float64, _M, _M,
+        _V, _V, float64, _V, float64, float64, _V,
+        MESH, pointer(PRESSURE), _V, float64, float64, _M, _M, _M,
     ),
     cache=True,
     fastmath=_FAST,
 )  # fmt: skip
 def equilibrate(
-    u, v, ac, standoff, lever, rest, beyond,
-    mesh, law, potential, parameters, smallest_gap, accuracy, hessian, work,
+    u, v, ac, standoff, lever, rest, rise,
+    mesh, law, parameters, smallest_gap, accuracy, hessian, work, far_work,
 ):  # fmt: skip
     """Newton's method for u = v − c K p(standoff + q − u) from a good guess, in place.
 
     ``ac`` is frame radius times compliance, ``standoff`` the gap to the flat surface of an unbent
-    lever. Its deflection q balances ``lever``·(q − ``rest``) against the force, of which
-    ``beyond``·Φ acts beyond the mesh; ``lever`` 0 holds q still. Leaves the gap and the pressure in
-    rows 0 and 1 of ``work``. Returns the number of iterations, negative if the guess was not near a
+    lever. Its deflection q balances ``lever``·(q − ``rest``) against the force, of which some acts
+    beyond the mesh (see ``beyond_mesh``); ``lever`` 0 holds q still. Leaves the gap and the pressure
+    in rows 0 and 1 of ``work``. Returns the number of iterations, negative if the guess was not near a
     stable shape (an indefinite Hessian, or no convergence).
     """
     n = standoff.size
@@ -254,7 +265,7 @@ def equilibrate(
             change[n] += push
         border = lever
         if size > n:
-            tail, draw = _beyond_mesh(gap, pressure, beyond, potential, parameters, work[4])
+            tail, draw = beyond_mesh(gap[n - 1], rise, mesh, law, parameters, far_work)
             change[n] += tail - lever * (u[n] - rest)
             border += draw
         _assemble(mesh, scale, slope, 0.0, border, hessian)
@@ -282,13 +293,13 @@ def equilibrate(
 
 @njit(
     int64(
-        _V, _V, float64, _V, float64, float64,
+        _V, _V, float64, _V, float64, _V,
         MESH, pointer(PRESSURE), pointer(POTENTIAL), _V, float64,
     ),
     cache=True,
     fastmath=_FAST,
 )  # fmt: skip
-def settle(u, v, ac, standoff, lever, beyond, mesh, law, potential, parameters, accuracy):
+def settle(u, v, ac, standoff, lever, rise, mesh, law, potential, parameters, accuracy):
     """Descend from ``u``, in place, to a stable shape of u = v − c K p(standoff + q − u).
 
     Newton's method on Π, its Hessian shifted until it is positive and no gap changes by more than
@@ -300,7 +311,7 @@ def settle(u, v, ac, standoff, lever, beyond, mesh, law, potential, parameters, 
     hessian = np.empty((n + 1, n + 1))
     gap, pressure, slope, density = np.empty(n), np.empty(n), np.empty(n), np.empty(n)
     gradient, change, trial, strain = np.empty(n + 1), np.empty(n + 1), np.empty(n), np.empty(n)
-    tail_work = np.empty(1)
+    far_work = np.empty((3, rise.size))
     scale = 1.0 / ac
     shift = 0.0
     for iteration in range(1, 10001):
@@ -312,7 +323,7 @@ def settle(u, v, ac, standoff, lever, beyond, mesh, law, potential, parameters, 
         multiply(mesh.stiffness, trial, strain)
         tail, border = 0.0, lever
         if size > n:
-            tail, draw = _beyond_mesh(gap, pressure, beyond, potential, parameters, tail_work)
+            tail, draw = beyond_mesh(gap[n - 1], rise, mesh, law, parameters, far_work)
             border += draw
         value, steepest = 0.5 * lever * u[n] * u[n] - tail * u[n], 0.0
         gradient[n] = lever * u[n] - tail
@@ -363,22 +374,29 @@ def settle(u, v, ac, standoff, lever, beyond, mesh, law, potential, parameters, 
 
 
 @njit(
-    float64(_V, _V, MESH, float64, float64, pointer(POTENTIAL), _V, _V), cache=True, fastmath=_FAST
+    float64(_V, _V, _V, MESH, float64, pointer(PRESSURE), _V, _M), cache=True, fastmath=_FAST
 )
-def tip_force(pressure, gap, mesh, frame, tip_end, potential, parameters, scratch):
-    """Force on the tip, N: the mesh's share and that of the flat surface beyond it.
-
-    Beyond the last node, where the profile is ``tip_end``, r dr = (r²/2g) dh on a paraboloid and
-    the integral of p is the potential Φ.
-    """
+def tip_force(pressure, gap, rise, mesh, frame, law, parameters, far_work):
+    """Force on the tip, N: the mesh's share and that of the flat surface beyond it."""
     n = gap.size
-    total = 0.0
+    total, _ = beyond_mesh(gap[n - 1], rise, mesh, law, parameters, far_work)
     for i in range(n):
         total += mesh.masses[i] * pressure[i]
-    scratch[0] = gap[n - 1]
-    potential(scratch, parameters, scratch, 1)
-    end = mesh.nodes[n - 1]
-    return 2.0 * pi * frame * frame * (total + end * end / (2.0 * tip_end) * scratch[0])
+    return 2.0 * pi * frame * frame * total
+
+
+@njit((pointer(PROFILE), _V, MESH, float64, _V, _V, _V), cache=True, fastmath=_FAST)
+def raise_tip(profile, parameters, mesh, frame, scratch, tip, rise):
+    """Heights of the tip above its apex at the nodes, and above the last node beyond the mesh."""
+    n, far = mesh.nodes.size, mesh.far.size
+    for i in range(far):
+        scratch[i] = frame * mesh.far[i]
+    profile(scratch, parameters, rise, far)
+    for i in range(n):
+        scratch[i] = frame * mesh.nodes[i]
+    profile(scratch, parameters, tip, n)
+    for i in range(far):
+        rise[i] -= tip[n - 1]
 
 
 @njit((float64, float64, int64, _V, _V, _M), cache=True)
@@ -516,15 +534,14 @@ def recall(background, time, frame, retardation, nodes, memory):
 
 @njit(
     int64(
-        pointer(HEIGHT), pointer(PROFILE), pointer(PRESSURE), pointer(POTENTIAL), PARAMETERS,
+        pointer(HEIGHT), pointer(PROFILE), pointer(PRESSURE), PARAMETERS,
         BACKGROUND, MESH, CONTROLS, _M, _V, _M, _M,
     ),
     cache=True,
     fastmath=_FAST,
 )  # fmt: skip
 def advance(
-    height, profile, law, potential, parameters, background, mesh, controls, fields, clock, records,
-    shapes,
+    height, profile, law, parameters, background, mesh, controls, fields, clock, records, shapes,
 ):  # fmt: skip
     """Step the surface in time until ``controls.end``, full records, a need to remesh, or FALL: no
     stable shape within the shortest step, which is not taken.
@@ -537,7 +554,9 @@ def advance(
     compliance, retardation = parameters.compliance, parameters.retardation
     modes = retardation.size
     hessian = np.empty((n + 1, n + 1))
-    newton_work = np.empty((5, n + 1))
+    newton_work = np.empty((4, n + 1))
+    far_work = np.empty((3, mesh.far.size))
+    rise = np.empty(mesh.far.size)
     gap, pressure = newton_work[0, :n], newton_work[1, :n]
     work = np.empty((8, n))
     v, guess, standoff, scratch = work[0], work[1], work[2], work[3]
@@ -559,7 +578,7 @@ def advance(
             break
         clock[TRIES] += 1
         step = min(clock[STEP], controls.longest_step)
-        if clock[AXIS_GAP] > 3.0 * controls.gap_of_tension:
+        if clock[AXIS_GAP] > 3.0 * controls.edge_gap:
             # Do not leap over a contact that has not been felt yet.
             step = min(step, 0.3 * clock[AXIS_GAP] / controls.top_speed)
         if step > 0.5 * left:
@@ -592,12 +611,10 @@ def advance(
                     + remember[m, _NOW] * load[i]
                 )
                 v[i] -= compliance[m + 1] * (memory[m, i] + old[m, i])
-        for i in range(n):
-            scratch[i] = frame * mesh.nodes[i]
-        profile(scratch, parameters.tip, tip, n)
+        raise_tip(profile, parameters.tip, mesh, frame, scratch, tip, rise)
         h0 = height(clock[TIME] + step, parameters.height)
         for i in range(n):
-            standoff[i] = h0 + tip[i]
+            standoff[i] = h0 - parameters.law[ORIGIN] + tip[i]
 
         extrapolation_weights(history, step, clock[LAST], clock[BEFORE], weights)
         predict(frame, step, history, fields, clock, mesh, weights, guess, scratch)
@@ -610,11 +627,10 @@ def advance(
         drag = parameters.lever[1] / step
         lever = parameters.lever[0] * (1.0 + drag) / (2.0 * pi * frame * frame)
         rest = clock[DEFLECTION] * drag / (1.0 + drag)
-        beyond = mesh.nodes[n - 1] ** 2 / (2.0 * tip[n - 1])
         iterations = equilibrate(
-            u, v, frame * c, standoff, lever, rest, beyond,
-            mesh, law, potential, parameters.law,
-            0.3 * controls.gap_of_tension, controls.newton, hessian, newton_work,
+            u, v, frame * c, standoff, lever, rest, rise,
+            mesh, law, parameters.law,
+            0.3 * controls.edge_gap, controls.newton, hessian, newton_work, far_work,
         )  # fmt: skip
         clock[NEWTONS] += abs(iterations)
 
@@ -627,9 +643,7 @@ def advance(
 
         for i in range(n):
             load_new[i] = (v[i] - u[i]) / c
-        force = tip_force(
-            pressure, gap, mesh, frame, tip[n - 1], potential, parameters.law, scratch
-        )
+        force = tip_force(pressure, gap, rise, mesh, frame, law, parameters.law, far_work)
 
         error = 0.0
         for i in range(n):
@@ -685,7 +699,7 @@ def advance(
             fields[DEFORMATION, i] = u[i]
             fields[LOAD_EARLIER, i] = fields[LOAD, i]
             fields[LOAD, i] = load_new[i]
-        edge = frame * radius_of_gap(gap, mesh.nodes, controls.gap_of_tension)
+        edge = frame * radius_of_gap(gap, mesh.nodes, controls.edge_gap)
         _move_clock(clock, step, frame, edge, force, u[n])
         clock[TIME] = controls.end if step == left else clock[TIME] + step
         clock[STEP] = max(step * min(2.5, max(0.3, growth)), 0.999 * controls.shortest_step)
@@ -695,7 +709,7 @@ def advance(
         # The cohesive zone as it is now: where the gap doubles outside the edge.
         coarseness = 0.0
         if edge > 0.0:
-            zone = frame * radius_of_gap(gap, mesh.nodes, 2.0 * controls.gap_of_tension) - edge
+            zone = frame * radius_of_gap(gap, mesh.nodes, 2.0 * controls.edge_gap) - edge
             coarseness = frame * mesh.edge_spacing / zone
         row = records[count]
         row[R_TIME], row[R_HEIGHT], row[R_FORCE], row[R_EDGE] = clock[TIME], h0 + u[n], force, edge

@@ -26,7 +26,7 @@ class Run:
         self.solver, self.contact, self.motion = solver, contact, motion
         self.strictness = tolerance / 1e-2
         self.surface = Surface(contact, motion, stiffness, self.strictness, solver.finest_spacing)
-        gap = self.surface.gap_of_tension
+        gap = self.surface.edge_gap
         fastest = min([gap / motion.top_speed, *self.surface.parameters.retardation])
         self.controls = k.Controls(
             end=0.0,
@@ -34,7 +34,7 @@ class Run:
             longest_step=0.0,
             top_speed=motion.top_speed,
             open_frame=self.surface.open_frame,
-            gap_of_tension=gap,
+            edge_gap=gap,
             prediction=0.03 * self.strictness**0.7,
             memory=min(0.01 * self.strictness, 0.05),
             force=0.01 * self.strictness,
@@ -101,7 +101,7 @@ class Run:
         surface, start = self.surface, self.surface.time
         modes, times = surface.parameters.compliance[1:], surface.parameters.retardation
         period = self.motion.breaks[-1] - start
-        periodic = PeriodicMemory(period, modes, times, surface.gap_of_tension)
+        periodic = PeriodicMemory(period, modes, times, surface.edge_gap)
         memory, misses = None, []
         for self.cycle in range(1, _MOST_CYCLES + 1):
             self.chunks.clear()
@@ -112,7 +112,7 @@ class Run:
             gained = surface.rewind(start)
             memory = np.zeros_like(gained) if memory is None else memory
             memory, off = periodic.next_start(memory, gained)
-            self.unsteady = off / surface.gap_of_tension
+            self.unsteady = off / surface.edge_gap
             misses.append(self.unsteady)
             if self.unsteady <= self.steadiness or _stagnates(misses):
                 return
@@ -152,7 +152,7 @@ class Run:
         controls = self.controls._replace(end=float(stop), finest=finest, coarsest=coarsest)
         shapes = np.empty((0 if self.shapes is None else _CHUNK, surface.mesh.nodes.size))
         outcome = k.advance(
-            *surface.functions, surface.parameters, surface.background, surface.mesh, controls,
+            *surface.functions[:3], surface.parameters, surface.background, surface.mesh, controls,
             surface.fields, surface.clock, self.records, shapes,
         )  # fmt: skip
         count = int(self.records[0, 0])
@@ -222,7 +222,7 @@ class Run:
             if parameters.lever[0] > 0:
                 unbalanced = clock[k.FORCE] / parameters.lever[0] - clock[k.DEFLECTION]
                 behind = max(behind, abs(unbalanced))
-            if outcome != k.FINISHED or behind < 1e-4 * surface.gap_of_tension:
+            if outcome != k.FINISHED or behind < 1e-4 * surface.edge_gap:
                 break
         surface.functions, surface.parameters, self.controls = functions, parameters, controls
         surface.background = background
@@ -293,19 +293,19 @@ class Run:
         if coarseness <= 1.3 * self.target:
             return ()
         spacing = self.surface.mesh.edge_spacing * edge
-        law = self.contact.surface
         # Seen through coarse nodes the zone looks wide; the relaxed cohesive length bounds it.
         wide = max(coarseness, 2 * spacing / self.contact.cohesive_length) / self.target
-        z0 = sqrt(wide) * law.equilibrium_gap
+        law = self.contact.surface
+        remedy = (
+            f"or enlarge z0 at fixed work of adhesion, LennardJones.from_work_of_adhesion(W="
+            f"{law.work_of_adhesion:.4g}, z0={sqrt(wide) * law.range:.2g})"
+        )
         return (
             f"the cohesive zone at the contact edge, {spacing / coarseness:.2g} m wide, is "
             f"resolved by nodes {spacing:.2g} m apart (finest_spacing = "
             f"{self.solver.finest_spacing:g} contact radii) where "
             f"{self.target * spacing / coarseness:.2g} m is needed: forces and above all the loop "
-            "energy may be wrong. Lower "
-            "solvers.Energy(finest_spacing=...), or enlarge z0 at fixed work of adhesion, "
-            "LennardJones.from_work_of_adhesion("
-            f"W={law.work_of_adhesion:.4g}, z0={z0:.2g})",
+            f"energy may be wrong. Lower solvers.Energy(finest_spacing=...), {remedy}",
         )
 
 

@@ -25,7 +25,8 @@ class Surface:
 
     def __init__(self, contact, motion, stiffness, strictness: float, finest_spacing: float):
         self.contact = contact
-        compliance = contact.sample.reduced_compliance
+        breaks = motion.breaks
+        compliance = contact.sample.reduced_compliance.chain(breaks[-1] - breaks[0])
         height, height_parameters = motion.compiled_height
         profile, tip_parameters = contact.tip.compiled_profile
         law, potential, law_parameters = contact.surface.compiled_pressure
@@ -38,10 +39,13 @@ class Surface:
             np.array(compliance.retardation_times, float),
             np.array([stiffness, 0.0]),
         )
-        self.gap_of_tension = contact.surface.gap_of_largest_tension
-        self.open_frame = 1.5 * sqrt(contact.tip.radius * contact.surface.equilibrium_gap)
+        origin = gap_origin(contact)
+        law_parameters[k.ORIGIN] = origin
+        self.edge_gap = contact.edge_gap - origin
+        self.open_frame = contact.tip.radius_at(1.125 * contact.reach)
         self.accuracy = 1e-3 * strictness
-        self.target = 0.2 * strictness**0.2
+        sharpness = contact.surface.sharpness if contact.adhesive else 1.0
+        self.target = 0.2 * strictness**0.2 / max(1.0, sharpness)
         self.growth = 0.25 * min(1.0, strictness**0.1)
         self.finest_level = max(0, ceil(log2(_COARSEST_SPACING / finest_spacing)))
         self.level = min(_FIRST_LEVEL, self.finest_level)
@@ -52,12 +56,13 @@ class Surface:
         modes = self.parameters.retardation.size
         self.fields = np.zeros((k.MEMORY + modes, self.mesh.nodes.size))
         self.clock = np.zeros(k.CLOCK_SIZE)
-        self.clock[k.TIME] = motion.breaks[0]
-        first = contact.contact_radius(float(motion.height(motion.breaks[0])))
+        self.clock[k.TIME] = breaks[0]
+        first = contact.contact_radius(float(motion.height(breaks[0])))
         self.clock[k.FRAME] = k.frame_for(first, self.open_frame)
         self.background = k.Background(np.empty((0, 0)), 1.0, 1.0, 1.0, 1.0, 0.0)
-        work = contact.surface.work_of_adhesion
-        self.clock[k.FORCE_SCALE] = 0.2 * np.pi * contact.tip.radius * work
+        if contact.adhesive:
+            work = contact.surface.work_of_adhesion
+            self.clock[k.FORCE_SCALE] = 0.2 * np.pi * contact.effective_radius * work
 
     def _mesh(self, level: int) -> k.Mesh:
         return k.Mesh(*unit_mesh(_COARSEST_SPACING * 2.0**-level, self.growth, EXTENT))
@@ -140,36 +145,36 @@ class Surface:
         height, profile, law, potential = self.functions
         n, frame = mesh.nodes.size, clock[k.FRAME]
         tip, pressure, scratch = np.empty(n), np.empty(n), np.empty(n)
-        profile(frame * mesh.nodes, self.parameters.tip, tip, n)
-        base = height(self.time, self.parameters.height)
+        rise, far_work = np.empty(mesh.far.size), np.empty((3, mesh.far.size))
+        k.raise_tip(profile, self.parameters.tip, mesh, frame, scratch, tip, rise)
+        h0 = height(self.time, self.parameters.height)
+        base = h0 - self.parameters.law[k.ORIGIN] + tip
         memory = self.memory()
         instantaneous, modes = self.parameters.compliance[0], self.parameters.compliance[1:]
         v = -modes @ memory
-        standoff = base + clock[k.DEFLECTION] + tip
+        standoff = base + clock[k.DEFLECTION]
         shape = self.fields[k.DEFORMATION]
         # A tip that starts inside the surface pushes it away.
-        pierced = standoff - shape < 0.3 * self.gap_of_tension
-        shape = np.where(pierced, standoff - self.gap_of_tension, shape)
+        pierced = standoff - shape < 0.3 * self.edge_gap
+        shape = np.where(pierced, standoff - self.edge_gap, shape)
         unknowns = np.append(shape, clock[k.DEFLECTION])
         lever = self.parameters.lever[0] / (2 * np.pi * frame**2)
         iterations = k.settle(
-            unknowns, v, frame * instantaneous, base + tip, lever,
-            mesh.nodes[-1] ** 2 / 2 / tip[-1], mesh,
+            unknowns, v, frame * instantaneous, base, lever, rise, mesh,
             law, potential, self.parameters.law, self.accuracy,
         )  # fmt: skip
         if iterations < 0:
-            raise DivergedError(f"no stable surface found at height {base:g} m")
+            raise DivergedError(f"no stable surface found at height {h0:g} m")
         u, clock[k.DEFLECTION] = unknowns[:-1], unknowns[-1]
         self.fields[k.DEFORMATION] = u
-        h0 = base + clock[k.DEFLECTION]
         self.fields[k.LOAD] = (v - u) / instantaneous
-        gap = h0 + tip - u
+        gap = base + clock[k.DEFLECTION] - u
         law(gap, self.parameters.law, pressure, scratch, n)
         force = k.tip_force(
-            pressure, gap, mesh, frame, tip[-1], potential, self.parameters.law, scratch
+            pressure, gap, rise, mesh, frame, law, self.parameters.law, far_work
         )
-        edge = frame * k.radius_of_gap(gap, mesh.nodes, self.gap_of_tension)
-        zone = frame * k.radius_of_gap(gap, mesh.nodes, 2 * self.gap_of_tension) - edge
+        edge = frame * k.radius_of_gap(gap, mesh.nodes, self.edge_gap)
+        zone = frame * k.radius_of_gap(gap, mesh.nodes, 2 * self.edge_gap) - edge
         lag = self.fields[k.LOAD] - memory
         rates = modes / self.parameters.retardation
         clock[k.FRAME_EARLIER] = clock[k.FRAME_EARLIEST] = frame
@@ -177,7 +182,8 @@ class Surface:
         clock[k.FORCE_SCALE] = max(clock[k.FORCE_SCALE], abs(force))
         clock[k.HISTORY] = 1
         record = np.zeros(k.RECORD_WIDTH)
-        record[k.R_TIME], record[k.R_HEIGHT], record[k.R_FORCE] = self.time, h0, force
+        record[k.R_TIME], record[k.R_FORCE] = self.time, force
+        record[k.R_HEIGHT] = h0 + clock[k.DEFLECTION]
         record[k.R_EDGE], record[k.R_AXIS], record[k.R_FRAME] = edge, u[0], frame
         record[k.R_LOSS] = 2 * np.pi * frame * rates @ np.sum((lag @ mesh.stiffness) * lag, axis=1)
         record[k.R_COARSENESS] = frame * mesh.edge_spacing / zone if edge else 0.0
@@ -200,3 +206,18 @@ class Surface:
         beyond = np.sum(_WEIGHTS * density(r, 0.0) * r**3 / (2 * end))
         bending = 0.5 * self.parameters.lever[0] * deflection**2
         return float(elastic + bending + 2 * np.pi * (near + beyond))
+
+
+def gap_origin(contact) -> float:
+    """Return where the solver counts gaps from, m, so that pressures change alike in all of them.
+
+    Steps, errors and the mesh are judged relative to the gap. That suits a Lennard-Jones law, whose
+    pressure changes as a power of the gap. Any other law is counted from where a Lennard-Jones law
+    has its zero that is as stiff at its equilibrium and has the same largest tension; one that only
+    repels so that its pressure changes as it does there.
+    """
+    law = contact.surface
+    if not law.attracts:
+        return contact.edge_gap - 12 * contact.reach
+    gap = law.equilibrium_gap
+    return gap + 9 * sqrt(3) * law.largest_tension / float(law.slope(gap))

@@ -130,7 +130,7 @@ class EnhancedAttard:
 
     def _discretise(self, tip, domain: float, height: float):
         from softafm.solvers import explicit_kernel as k
-        from softafm.solvers.explicit_run import Discretisation
+        from softafm.solvers.explicit_run import Discretisation, beyond_domain
 
         count, basis = self.functions, self.basis
         segments = functions.grid(self.nodes, self.quadrature)
@@ -147,6 +147,7 @@ class EnhancedAttard:
         else:
             influence = ring_influence(segments.radius, segments.edges)
             unity, profile_image = np.ones(self.nodes), profile
+        far_rise, far_area = beyond_domain(tip, domain, radius[-1])
         setup = k.Setup(
             kind=k.ORTHOGONAL if self.orthogonal else k.LEAST_SQUARES,
             carried=carried,
@@ -158,7 +159,9 @@ class EnhancedAttard:
             profile_image=profile_image,
             radius=radius,
             area=2 * np.pi * domain * radius * segments.weight,
-            rim=np.array([domain, tip.profile(domain)]),
+            far_rise=far_rise,
+            far_area=far_area,
             axis=np.array([1.0, 0.0] if self.quadrature == "trapezoid" else [9 / 8, -1 / 8]),
         )
-        return Discretisation(setup, carried * (height * constant + profile_coefficients))
+        flat = carried * (height * constant + profile_coefficients)
+        return Discretisation(setup, flat, domain)

@@ -23,7 +23,7 @@ from typing import NamedTuple
 import numpy as np
 from numba import boolean, float64, int64, njit, types
 
-from softafm.compiled import POTENTIAL, PRESSURE, pointer
+from softafm.compiled import PRESSURE, pointer
 from softafm.solvers.dense import (
     factorise,
     factorise_general,
@@ -61,8 +61,9 @@ class Setup(NamedTuple):
 
     ``influence`` (e, n) takes a pressure to q, m; ``shapes`` (N, n) are the functions at the nodes
     (unused at nodes), ``unity`` and ``profile_image`` (e,) the constant 1 and the tip profile where
-    the equations are posed, ``profile`` (n,) at the nodes. ``area`` (n,) holds 2πr dr and ``rim``
-    the radius rd and the profile there. ``axis`` extrapolates to r = 0 from the first two nodes.
+    the equations are posed, ``profile`` (n,) at the nodes. ``area`` (n,) holds 2πr dr. Beyond
+    the domain, where the surface counts as level with the last node, ``far_area`` (far,) does, and
+    ``far_rise`` is the height of the tip above that node. ``axis`` extrapolates to r = 0 from the first two nodes.
     """
 
     kind: int
@@ -75,7 +76,8 @@ class Setup(NamedTuple):
     profile_image: np.ndarray
     radius: np.ndarray
     area: np.ndarray
-    rim: np.ndarray
+    far_rise: np.ndarray
+    far_area: np.ndarray
     axis: np.ndarray
 
 
@@ -101,7 +103,7 @@ class Controls(NamedTuple):
     tolerance: float
     relaxation: float
     most_iterations: int
-    gap_of_tension: float
+    edge_gap: float
     largest_pressure: float
     stiffness: float
 
@@ -129,19 +131,22 @@ class Work(NamedTuple):
     stages: np.ndarray  # (4, rows, e)
     free: np.ndarray  # (rows, e)  rates under a tip that stands still
     dragged: np.ndarray  # (rows, e)  rates under a tip that moves at unit speed
+    far: np.ndarray  # (3, far)  gap, pressure, slope beyond the domain
     tip: np.ndarray  # (2,)  height of a tip on a lever, and its rate
     past_tip: np.ndarray  # (rates,)  past rates of its height
     pivots: np.ndarray  # (e,) int
 
 
-SETUP = types.NamedTuple((int64, float64, float64, _M, _M, _V, _V, _V, _V, _V, _V, _V), Setup)
+SETUP = types.NamedTuple(
+    (int64, float64, float64, _M, _M, _V, _V, _V, _V, _V, _V, _V, _V), Setup
+)
 MATERIAL = types.NamedUniTuple(_V, 3, Material)
 CONTROLS = types.NamedTuple(
     (float64, boolean, _V, float64, float64, int64, float64, float64, float64), Controls
 )
 WORK = types.NamedTuple(
     (
-        _V, _V, _V, _V, _V, _V, _M, _M, _V, _V, _V, _V, _V, _M, _M, _M, _M, _CUBE, _M, _M, _V, _V,
+        _V, _V, _V, _V, _V, _V, _M, _M, _V, _V, _V, _V, _V, _M, _M, _M, _M, _CUBE, _M, _M, _M, _V, _V,
         int64[::1],
     ),
     Work,
@@ -286,19 +291,19 @@ def rates(setup, material, controls, height, speed, state, out, work, counters):
     return FINISHED
 
 
-@njit(float64(_V, _V, float64, _V, pointer(POTENTIAL), _V, _V), cache=True, fastmath=_FAST)
-def tip_force(area, pressure, gap_at_rim, rim, potential, parameters, scratch):
-    """Force on the tip, N.
-
-    The surface beyond the domain, level with its rim, adds its share as for a paraboloid, for which
-    r dr = (r²/2g) dh and the integral of p is the potential Φ.
-    """
+@njit(float64(SETUP, pointer(PRESSURE), MATERIAL, WORK), cache=True, fastmath=_FAST)
+def tip_force(setup, law, material, work):
+    """Force on the tip, N; leaves gap, pressure and slope beyond the domain in ``work.far``."""
+    far, last = setup.far_rise.size, work.gap.size - 1
+    for i in range(far):
+        work.far[0, i] = work.gap[last] + setup.far_rise[i]
+    law(work.far[0], material.law, work.far[1], work.far[2], far)
     total = 0.0
-    for i in range(area.size):
-        total += area[i] * pressure[i]
-    scratch[0] = gap_at_rim
-    potential(scratch, parameters, scratch, 1)
-    return total + pi * rim[0] * rim[0] / rim[1] * scratch[0]
+    for i in range(far):
+        total += setup.far_area[i] * work.far[1, i]
+    for i in range(setup.area.size):
+        total += setup.area[i] * work.pressure[i]
+    return total
 
 
 @njit(
@@ -337,8 +342,9 @@ def rates_on_lever(
                 change = work.dragged[0, j] - work.free[0, j]
                 beta += setup.sign * setup.shapes[j, i] * change
         gradient = setup.area[i] * work.slope[i]
-        if i == n - 1:  # and the surface beyond, which moves with the rim
-            gradient -= pi * setup.rim[0] ** 2 / setup.rim[1] * work.pressure[i]
+        if i == n - 1:  # and the surface beyond, which moves with it
+            for j in range(setup.far_area.size):
+                gradient += setup.far_area[j] * work.far[2, j]
         resisting -= gradient * (1.0 - beta)
         driving -= gradient * alpha
     if resisting < 0.0:
@@ -371,11 +377,11 @@ def note(setup, material, controls, height, force, work, record):
 
     edge = setup.radius[n - 1]
     for i in range(n):
-        if work.gap[i] >= controls.gap_of_tension:
+        if work.gap[i] >= controls.edge_gap:
             edge = 0.0
             if i > 0:
                 inner = work.gap[i - 1]
-                part = (controls.gap_of_tension - inner) / (work.gap[i] - inner)
+                part = (controls.edge_gap - inner) / (work.gap[i] - inner)
                 edge = setup.radius[i - 1] + part * (setup.radius[i] - setup.radius[i - 1])
             break
     record[R_EDGE] = edge
@@ -410,14 +416,14 @@ def filter_pressure(step, retardation, before, pressure, filtered):
 
 @njit(
     int64(
-        SETUP, pointer(PRESSURE), pointer(POTENTIAL), MATERIAL, CONTROLS,
+        SETUP, pointer(PRESSURE), MATERIAL, CONTROLS,
         _CONST, _CONST, int64, _M, _CUBE, WORK, _M, _M, int64[::1],
     ),
     cache=True,
     fastmath=_FAST,
 )  # fmt: skip
 def march(
-    setup, law, potential, material, controls,
+    setup, law, material, controls,
     heights, speeds, stop, state, past, work, records, shapes, counters,
 ):  # fmt: skip
     """Step through a piece of the motion from instant ``counters[INSTANT]`` to before ``stop``.
@@ -432,8 +438,6 @@ def march(
     instants = heights.size // 2
     lever = controls.stiffness > 0.0
     tip, past_tip = work.tip, work.past_tip
-    last = work.gap.size - 1
-    below_rim = setup.rim[1] - setup.profile[last]
     while counters[INSTANT] < stop:
         instant = counters[INSTANT]
         height = tip[0] if lever else heights[2 * instant]
@@ -444,10 +448,7 @@ def march(
             work.filtered,
         )  # fmt: skip
         work.pressure_before[:] = work.pressure
-        force = tip_force(
-            setup.area, work.pressure, work.gap[last] + below_rim, setup.rim, potential,
-            material.law, work.scratch,
-        )  # fmt: skip
+        force = tip_force(setup, law, material, work)
         now = past[instant % ring]
         now[:] = past[(instant - 1) % ring]
         if lever:
@@ -488,10 +489,7 @@ def march(
                     return BLOWN_UP
                 stages[stage] = stages[stage - 1]
                 if lever:
-                    force = tip_force(
-                        setup.area, work.pressure, work.gap[last] + below_rim, setup.rim, potential,
-                        material.law, work.scratch,
-                    )  # fmt: skip
+                    force = tip_force(setup, law, material, work)
                     outcome = rates_on_lever(
                         setup, material, controls, height, force, heights[at], speeds[at],
                         work.trial, stages[stage], work, counters,

@@ -9,6 +9,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from softafm.errors import AccuracyWarning, DivergedError
+from softafm.halfspace.mesh import beyond
 from softafm.motions import lowest_height
 from softafm.solvers import explicit_kernel as k
 from softafm.solvers.history import History, Profiles
@@ -18,10 +19,11 @@ _MOST_CYCLES = 100
 
 
 class Discretisation(NamedTuple):
-    """A surface as the compiled loop takes it, and the coefficients of the flat one."""
+    """A surface as the compiled loop takes it, the coefficients of the flat one, and its radius."""
 
     setup: k.Setup
     flat: np.ndarray
+    domain: float
 
 
 class Iteration(NamedTuple):
@@ -45,12 +47,17 @@ def default_domain(contact, motion) -> float:
     """Radius of the computational domain, m: the largest contact expected and what acts around it.
 
     The contact is that of the relaxed JKR theory at the lowest tip height. Around it the domain
-    reaches to where the tip has risen by 12 equilibrium gaps, or thrice its lowest height.
+    reaches to where the tip has risen by 12 reaches of the surface law, or thrice its lowest height.
     """
-    lowest, law = lowest_height(motion), contact.surface
-    reach = max(12 * law.equilibrium_gap, 3 * lowest)
-    edge = contact.contact_radius(lowest)
-    return float(np.sqrt(edge**2 + 2 * contact.tip.radius * reach))
+    lowest, tip = lowest_height(motion), contact.tip
+    rise = max(12 * contact.reach, 3 * lowest)
+    return float(tip.radius_at(float(tip.profile(contact.contact_radius(lowest))) + rise))
+
+
+def beyond_domain(tip, domain: float, last: float) -> tuple[np.ndarray, np.ndarray]:
+    """Heights of the tip above radius ``last``, and 2πr dr, at radii beyond the domain."""
+    radius, masses = beyond(domain)
+    return tip.profile(radius) - tip.profile(last), 2 * np.pi * masses
 
 
 def march(
@@ -100,17 +107,17 @@ class _Run:
     def __init__(self, discretisation, contact, motion, solver, stiffness, iteration, keep_shapes):
         self.setup, self.solver, self.motion = discretisation.setup, solver, motion
         self.stiffness = stiffness
-        self.law, self.potential, law_parameters = contact.surface.compiled_pressure
-        creep = contact.sample.reduced_compliance
+        self.law, _, law_parameters = contact.surface.compiled_pressure
+        creep = contact.sample.reduced_compliance.chain(motion.breaks[-1] - motion.breaks[0])
         self.material = k.Material(
             law_parameters,
             np.concatenate([[creep.instantaneous], creep.modes]),
             np.array(creep.retardation_times, float),
         )
-        self.gap_of_tension = contact.surface.gap_of_largest_tension
-        rim, profile = self.setup.rim
+        self.edge_gap = contact.edge_gap
+        self.domain = discretisation.domain
         unknowns = self.setup.shapes.shape[0]
-        self.largest_pressure = _largest_pressure(contact, rim, profile, unknowns)
+        self.largest_pressure = _largest_pressure(contact, self.domain, unknowns)
         self.iteration = iteration
         self.pieces = list(_pieces(motion, solver.steps))
         modes = creep.retardation_times.size
@@ -119,7 +126,9 @@ class _Run:
         self.state = np.zeros((rows, equations))
         self.state[0, : discretisation.flat.size] = discretisation.flat
         self.past = np.zeros((max(2, solver.stepper.weights.size), rows, equations))
-        self.work = _workspace(self.past.shape, modes, nodes, unknowns)
+        self.work = _workspace(
+            self.past.shape, modes, nodes, unknowns, self.setup.far_rise.size
+        )
         self.work.tip[0] = motion.height(motion.breaks[0])
         total = 1 + sum(piece.time.size - 1 for piece in self.pieces)
         self.records = np.empty((total, k.RECORD_WIDTH))
@@ -141,7 +150,7 @@ class _Run:
             if self.setup.kind > k.NODAL:
                 unknowns = self.setup.shapes.shape[0]
                 change = change[:unknowns] @ self.setup.shapes
-            self.unsteady = float(np.abs(change).max()) / (gained * self.gap_of_tension)
+            self.unsteady = float(np.abs(change).max()) / (gained * self.edge_gap)
             if self.unsteady <= tolerance:
                 return
 
@@ -155,7 +164,7 @@ class _Run:
             self.counters[[k.INSTANT, k.PAST]] = 0
             while self.counters[k.INSTANT] < stop:
                 outcome = k.march(
-                    self.setup, self.law, self.potential, self.material, controls,
+                    self.setup, self.law, self.material, controls,
                     piece.heights, piece.speeds, min(stop, self.counters[k.INSTANT] + _CHUNK),
                     self.state, self.past, self.work,
                     self.records[offset:], self.shapes[offset:], self.counters,
@@ -174,7 +183,7 @@ class _Run:
             tolerance=self.iteration.tolerance,
             relaxation=self.iteration.relaxation,
             most_iterations=self.iteration.most,
-            gap_of_tension=self.gap_of_tension,
+            edge_gap=self.edge_gap,
             largest_pressure=self.largest_pressure,
             stiffness=self.stiffness,
         )
@@ -222,7 +231,7 @@ class _Run:
                 "steps": max(0, count - 1),
                 "nodes": nodes.size,
                 "unknowns": self.setup.shapes.shape[0],
-                "domain": float(self.setup.rim[0]),
+                "domain": self.domain,
                 "rates": int(self.counters[k.RATES]),
                 "iterations": int(self.counters[k.ITERATIONS]),
                 "rates_beyond_fold": int(self.counters[k.BEYOND_FOLD]),
@@ -245,7 +254,7 @@ class _Run:
                 f"no steady cycle after {self.cycle}: the surface still drifts by "
                 f"{self.unsteady:.2g} gaps of largest tension. solvers.Energy() looks ahead"
             )
-        edge, domain = float(records[:, k.R_EDGE].max(initial=0.0)), float(self.setup.rim[0])
+        edge, domain = float(records[:, k.R_EDGE].max(initial=0.0)), self.domain
         if edge > 0.9 * domain:
             yield (
                 f"the contact reaches to {edge:.3g} m, the rim of the domain of {domain:.3g} m: "
@@ -253,18 +262,17 @@ class _Run:
             )
 
 
-def _largest_pressure(contact, domain: float, profile: float, unknowns: int) -> float:
+def _largest_pressure(contact, domain: float, unknowns: int) -> float:
     """Return a pressure that no contact within the domain reaches, Pa.
 
     Twice the peak of a Hertz contact that fills the domain at the instantaneous modulus and the
     largest tension: contacts that did not blow up stay below a quarter of it. A surface that can
     only rise and sink as a whole bears more.
     """
-    slope = 2 * profile / domain
+    slope = 2 * contact.tip.profile(domain) / domain
     hertz = 2 / np.pi * slope / contact.sample.reduced_compliance.instantaneous
-    surface = contact.surface
     share = 2 if unknowns > 1 else 20
-    return share * float(hertz - surface.pressure(surface.gap_of_largest_tension))
+    return share * float(hertz + contact.surface.largest_tension)
 
 
 def _pieces(motion, steps: int):
@@ -283,7 +291,9 @@ def _pieces(motion, steps: int):
         )
 
 
-def _workspace(past: tuple[int, int, int], modes: int, nodes: int, unknowns: int) -> k.Work:
+def _workspace(
+    past: tuple[int, int, int], modes: int, nodes: int, unknowns: int, far: int
+) -> k.Work:
     """Return the arrays that a run with a ring of ``past`` rates keeps."""
     rates, rows, equations = past
     sizes: dict[str, Any] = {
@@ -293,7 +303,7 @@ def _workspace(past: tuple[int, int, int], modes: int, nodes: int, unknowns: int
         "right": equations, "solution": equations, "scratch": nodes,
         "stiffened": (equations, nodes), "matrix": (unknowns, equations),
         "normal": (unknowns, unknowns), "trial": (rows, equations),
-        "stages": (4, rows, equations), "free": (rows, equations), "dragged": (rows, equations),
+        "far": (3, far), "stages": (4, rows, equations), "free": (rows, equations), "dragged": (rows, equations),
         "tip": 2, "past_tip": rates,
     }  # fmt: skip
     arrays = {name: np.zeros(size) for name, size in sizes.items()}

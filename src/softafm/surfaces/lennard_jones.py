@@ -1,16 +1,16 @@
-"""Laws of the pressure between two surfaces against the gap that separates them."""
+"""The Lennard-Jones law between half-spaces."""
 
 from dataclasses import dataclass
 from math import pi
 from typing import ClassVar
 
-import numpy as np
-
 from softafm._validate import positive
+from softafm.formulas import Term
+from softafm.surfaces.law import SurfaceLaw
 
 
 @dataclass(frozen=True)
-class LennardJones:
+class LennardJones(SurfaceLaw):
     """Lennard-Jones pressure between half-spaces, p(h) = H/(6πh³)·((z0/h)⁶ − 1).
 
     Parameters
@@ -60,19 +60,22 @@ class LennardJones:
         """Gap where the attraction is strongest, 3^(1/6)·z0, m."""
         return 3 ** (1 / 6) * self.z0
 
-    def pressure(self, gap):
-        """Pressure at ``gap`` (m), positive = repulsive, Pa."""
-        h = np.asarray(gap, float)
-        return self.hamaker / (6 * pi * h**3) * ((self.z0 / h) ** 6 - 1)
-
-    def potential(self, gap):
-        """Interaction energy per area Φ at ``gap`` (m), J/m²; Φ' = −p, Φ(z0) = −W."""
-        h = np.asarray(gap, float)
-        return self.hamaker / (12 * pi * h**2) * ((self.z0 / h) ** 6 / 4 - 1)
+    @property
+    def range(self) -> float:
+        """The equilibrium gap z0, m."""
+        return self.z0
 
     @property
-    def compiled_pressure(self):
-        """Compiled p(h) and dp/dh with their parameters (see ``softafm.compiled``)."""
-        from softafm.kernels import lennard_jones_potential, lennard_jones_pressure
+    def terms(self) -> tuple[Term]:
+        """p(h) = H/(6πh³)·((z0/h)⁶ − 1), Φ(h) = H/(12πh²)·((z0/h)⁶/4 − 1)."""
+        return (Term(_lennard_jones, (self.hamaker, self.z0)),)
 
-        return lennard_jones_pressure, lennard_jones_potential, np.array([self.hamaker, self.z0])
+
+def _lennard_jones(h, H, z0):
+    inverse = 1 / h
+    attraction = H / (6 * pi) * inverse * inverse * inverse
+    ratio = z0 * inverse
+    cube = ratio * ratio * ratio
+    repulsion = attraction * cube * cube
+    slope = (3 * attraction - 9 * repulsion) * inverse
+    return repulsion - attraction, slope, 0.5 * h * (0.25 * repulsion - attraction)

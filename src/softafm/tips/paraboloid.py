@@ -1,15 +1,16 @@
-"""Rigid axisymmetric tips."""
+"""A paraboloid of revolution."""
 
 from dataclasses import dataclass
+from math import sqrt
 from typing import ClassVar
 
-import numpy as np
-
 from softafm._validate import positive
+from softafm.formulas import Term
+from softafm.tips.tip import Tip
 
 
 @dataclass(frozen=True)
-class Paraboloid:
+class Paraboloid(Tip):
     """Paraboloid of revolution, g(r) = r²/2R: a sphere near its apex.
 
     Parameters
@@ -33,13 +34,15 @@ class Paraboloid:
     def __post_init__(self):
         object.__setattr__(self, "radius", positive("radius", self.radius, "m"))
 
-    def profile(self, r):
-        """Height of the tip surface above its apex at radial coordinate ``r``, m."""
-        return np.square(r) / (2 * self.radius)
-
     @property
-    def compiled_profile(self):
-        """The profile as a compiled function and its parameters (see ``softafm.compiled``)."""
-        from softafm.kernels import paraboloid
+    def term(self) -> Term:
+        """g(r) = r²/2R."""
+        return Term(_height, (self.radius,))
 
-        return paraboloid, np.array([self.radius])
+    def radius_at(self, height: float) -> float:
+        """Radius at which the profile reaches ``height`` (m), m."""
+        return sqrt(2 * self.radius * height)
+
+
+def _height(r, R):
+    return r * r / (2 * R)
