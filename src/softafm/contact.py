@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from softafm.tips import Tip
 
 _ZOOMS, _POINTS = 9, 33
-_SOFT = 1e-3
+_SOFT = 1e-4
 """Share of the modulus to which the repulsion of a law without attraction falls at the edge."""
 
 
@@ -52,17 +52,24 @@ class Contact:
     def edge_gap(self) -> float:
         """Gap at the edge of the contact, m: that of largest tension.
 
-        Without attraction that at which the repulsion has fallen to a thousandth of the relaxed
-        modulus, or of the short-term modulus of a sample that flows.
+        Without attraction that at which the repulsion has fallen to 1e-4 of the softened modulus.
         """
         if self.surface.attracts:
             return self.surface.gap_of_largest_tension
-        low, high = 1e-12, 1e-6
-        least = _SOFT * (self._modulus_relaxed or self._modulus_instantaneous)
+        low, high, least = 1e-12, 1e-6, _SOFT * self.softened_modulus
         for _ in range(60):
             middle = sqrt(low * high)
             low, high = (middle, high) if self.surface.pressure(middle) > least else (low, middle)
         return low
+
+    @property
+    def softened_modulus(self) -> float:
+        """Long-term reduced modulus; of a sample that flows, its modulus when flow sets in, Pa."""
+        creep = self.sample.reduced_compliance
+        if creep.fluidity == 0:
+            return 1 / creep.relaxed
+        slowest = max([creep.instantaneous / creep.fluidity, *creep.retardation_times])
+        return 1 / float(creep.at(slowest))
 
     @cached_property
     def reach(self) -> float:
@@ -136,6 +143,7 @@ class Contact:
         points, weights = np.polynomial.legendre.leggauss(10)
         start = self.tip.radius_at(0.01 * self.reach)
         edges = start * np.concatenate([[0], np.geomspace(1, 1e5, 101)])
+        edges = np.union1d(edges, self.tip.joints)
         middle, half = (edges[1:] + edges[:-1]) / 2, np.diff(edges) / 2
         r = middle[:, None] + half[:, None] * points
         return r.ravel(), (half[:, None] * weights * r).ravel()
@@ -159,7 +167,7 @@ class Contact:
         The stable branch of JKR (Johnson, Kendall and Roberts 1971) for any profile (Maugis and
         Barquins 1983), −h0 = δ(a) − sqrt(2πaW/E_inf) with δ(a) = a ∫ g'(r)/√(a² − r²) dr, that is
         a²/R of a paraboloid; zero where no contact exists. A sample that flows counts with its
-        short-term modulus.
+        softened modulus.
         """
         depth = -tip_height
         low, shallowest = self._last_contact
@@ -189,11 +197,9 @@ class Contact:
     def _relaxed_depth(self, radius: np.ndarray) -> np.ndarray:
         """Depth of the tip, m, in relaxed contacts of some radii, m, shape (n,)."""
         points, weights = np.polynomial.legendre.leggauss(16)
-        r = radius[:, None] * np.sin(pi / 4 * (points + 1))
-        step = 1e-4 * r
-        slope = (self.tip.profile(r + step) - self.tip.profile(r - step)) / (2 * step)
+        slope = self.tip.slope(radius[:, None] * np.sin(pi / 4 * (points + 1)))
         depth = radius * (slope @ weights) * pi / 4
         if self.adhesive:
-            modulus = self._modulus_relaxed or self._modulus_instantaneous
-            depth -= np.sqrt(2 * pi * radius * self.surface.work_of_adhesion / modulus)
+            pull = 2 * pi * self.surface.work_of_adhesion / self.softened_modulus
+            depth -= np.sqrt(pull * radius)
         return depth

@@ -4,8 +4,9 @@ Each choice a user can make in a table (``shape``, ``model``, ``law``, ``name``)
 its fields are the table's other keys, and ``build`` returns the object.
 """
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, fields
+from inspect import Parameter, signature
 from pathlib import Path
 from typing import Annotated, Any, ClassVar, Literal, get_args, get_origin, get_type_hints
 
@@ -164,25 +165,6 @@ class Table(BaseModel):
         raise ValueError(f"give {choices}; found {', '.join(values) or 'none of them'}")
 
 
-class ParaboloidTip(Table):
-    """``[tip] shape = "paraboloid"``."""
-
-    radius: Length
-
-    def build(self) -> Paraboloid:
-        return Paraboloid(radius=self.radius)
-
-
-class ElasticSample(Table):
-    """``[sample] model = "elastic"``."""
-
-    E: Modulus
-    poisson: Number
-
-    def build(self) -> Elastic:
-        return Elastic(E=self.E, poisson=self.poisson)
-
-
 class StandardLinearSolidSample(Table):
     """``[sample] model = "standard-linear-solid"``: moduli E or G, creep or relaxation time."""
 
@@ -206,34 +188,6 @@ class StandardLinearSolidSample(Table):
         if "relaxation_time" in time:
             return StandardLinearSolid.from_relaxation_time(**moduli, **time, poisson=self.poisson)
         return StandardLinearSolid(**moduli, **time, poisson=self.poisson)
-
-
-class GeneralizedKelvinVoigtSample(Table):
-    """``[sample] model = "generalized-kelvin-voigt"``."""
-
-    E0: Modulus
-    compliances: Compliances
-    retardation_times: Times
-    poisson: Number
-
-    def build(self) -> GeneralizedKelvinVoigt:
-        return GeneralizedKelvinVoigt(
-            self.E0, self.compliances, self.retardation_times, self.poisson
-        )
-
-
-class LennardJonesSurface(Table):
-    """``[surface] law = "lennard-jones"``: a Hamaker constant or a work of adhesion."""
-
-    hamaker: Joules | None = None
-    work_of_adhesion: JoulesPerArea | None = None
-    z0: Length
-
-    def build(self) -> LennardJones:
-        strength = self.given(("hamaker",), ("work_of_adhesion",))
-        if "hamaker" in strength:
-            return LennardJones(hamaker=strength["hamaker"], z0=self.z0)
-        return LennardJones.from_work_of_adhesion(strength["work_of_adhesion"], self.z0)
 
 
 class TriangleMotion(Table):
@@ -391,6 +345,41 @@ def _written(name: str, declared: Any) -> Any:
     if get_origin(declared) is Literal:
         return Annotated[Any, _choice({choice: choice for choice in get_args(declared)})]
     return _PLAIN[declared]
+
+
+class Thing(Table):
+    """A tip, sample or surface law, which one of several constructors makes of the keys."""
+
+    constructors: ClassVar[tuple[Callable, ...]]
+
+    def build(self) -> Any:
+        given = {key: getattr(self, key) for key in self.model_fields_set}
+        for constructor in self.constructors:
+            needed, known = _keys_of(constructor)
+            if set(needed) <= given.keys() <= set(known):
+                return constructor(**{known[key]: value for key, value in given.items()})
+        ways = ", or ".join(all_of(_keys_of(make)[0]) for make in self.constructors)
+        raise ValueError(f"give {ways}; found {', '.join(given) or 'none of them'}")
+
+
+def _thing(*constructors: Callable) -> type[Thing]:
+    """Return the table of what a class, or another of its constructors, makes."""
+    keys: dict[str, Any] = {}
+    for constructor in constructors:
+        keys |= {key: (_KEYS[key], None) for key in _keys_of(constructor)[1]}
+    if len(constructors) == 1:  # what is missing is told key by key
+        keys |= {key: (_KEYS[key], ...) for key in _keys_of(constructors[0])[0]}
+    table = create_model(constructors[0].__name__, __base__=Thing, **keys)
+    table.constructors = constructors
+    return table
+
+
+def _keys_of(constructor: Callable) -> tuple[list[str], dict[str, str]]:
+    """Return the keys that a constructor needs, and of each it knows the name of its parameter."""
+    parameters = signature(constructor).parameters
+    key_of = {name: _KEY_OF.get(name, name) for name in parameters}
+    needed = [key_of[n] for n, parameter in parameters.items() if parameter.default is _NO_DEFAULT]
+    return needed, {key: name for name, key in key_of.items()}
 
 
 CHOICES: dict[str, tuple[str, dict[str, type[Table]]]] = {

@@ -24,7 +24,7 @@ import numpy as np
 from numba import float64, int64, njit, types
 
 from softafm.compiled import HEIGHT, POTENTIAL, PRESSURE, PROFILE, pointer
-from softafm.solvers.dense import factorise, multiply, solve_factorised
+from softafm.solvers.dense import factorise, multiply, row_products, solve_factorised
 
 _FAST = {"reassoc", "contract", "nsz", "arcp"}
 _V = float64[::1]
@@ -35,8 +35,8 @@ _CONST2 = types.Array(float64, 2, "C", readonly=True)
 # Why `advance` came back.
 FINISHED, FULL, REMESH, FALL, STUCK, TRIGGERED = range(6)
 
-# Rows of `fields`: the last three shapes, the last two loads q, then one row per memory mode y_m.
-DEFORMATION, EARLIER, EARLIEST, LOAD, LOAD_EARLIER, MEMORY = range(6)
+# Rows of `fields`: the last three shapes, the load q before and now, then one per memory mode y_m.
+DEFORMATION, EARLIER, EARLIEST, LOAD_EARLIER, LOAD, MEMORY = range(6)
 
 # Entries of `clock`: the instant, the step to try, the last two steps; radii of the frames of the
 # last three shapes; contact-edge radius, now and before; gap on the axis; the last three forces and
@@ -135,44 +135,50 @@ BACKGROUND = types.NamedTuple((_M, float64, float64, float64, float64, float64),
 CONTROLS = types.NamedUniTuple(float64, len(Controls._fields), Controls)
 
 
-@njit((_V, int64, float64, float64, float64, float64, _CONST, _V), cache=True, fastmath=_FAST)
-def transfer(values, n, end, edge_spacing, growth, stretch, nodes, out):
-    """Evaluate a displacement field of one mesh at radii ``stretch``·``nodes`` of another.
+@njit((_M, float64, float64, float64, float64, _CONST, _M), cache=True, fastmath=_FAST)
+def transfer(fields, end, edge_spacing, growth, stretch, nodes, out):
+    """Evaluate displacement fields of one mesh at radii ``stretch``·``nodes`` of another.
 
-    ``values`` (n,) live on a mesh of this ``edge_spacing`` and ``growth`` whose last node is
+    ``fields`` (m, n) live on a mesh of this ``edge_spacing`` and ``growth`` whose last node is
     ``end``. Six-point Lagrange interpolation in the node index, even about the axis; beyond the
     last node the field of a concentrated load, 1/r.
     """
     scale = growth / edge_spacing
+    rows, n = fields.shape
     for i in range(nodes.size):
         r = nodes[i] * stretch
         if r > end:
-            out[i] = values[n - 1] * end / r
+            for m in range(rows):
+                out[m, i] = fields[m, n - 1] * end / r
             continue
         x = (asinh(scale * (r - 1.0)) + asinh(scale * (r + 1.0))) / growth
         base = min(floor(x) - 2, n - 6)
         t0 = x - base
         t1, t2, t3, t4, t5 = t0 - 1.0, t0 - 2.0, t0 - 3.0, t0 - 4.0, t0 - 5.0
-        out[i] = (
-            t1 * t2 * t3 * t4 * t5 / -120.0 * values[abs(base)]
-            + t0 * t2 * t3 * t4 * t5 / 24.0 * values[abs(base + 1)]
-            + t0 * t1 * t3 * t4 * t5 / -12.0 * values[abs(base + 2)]
-            + t0 * t1 * t2 * t4 * t5 / 12.0 * values[abs(base + 3)]
-            + t0 * t1 * t2 * t3 * t5 / -24.0 * values[abs(base + 4)]
-            + t0 * t1 * t2 * t3 * t4 / 120.0 * values[abs(base + 5)]
-        )
+        w0, w1 = t1 * t2 * t3 * t4 * t5 / -120.0, t0 * t2 * t3 * t4 * t5 / 24.0
+        w2, w3 = t0 * t1 * t3 * t4 * t5 / -12.0, t0 * t1 * t2 * t4 * t5 / 12.0
+        w4, w5 = t0 * t1 * t2 * t3 * t5 / -24.0, t0 * t1 * t2 * t3 * t4 / 120.0
+        i0, i1, i2 = abs(base), abs(base + 1), abs(base + 2)
+        i3, i4, i5 = base + 3, base + 4, base + 5
+        for m in range(rows):
+            out[m, i] = (
+                w0 * fields[m, i0]
+                + w1 * fields[m, i1]
+                + w2 * fields[m, i2]
+                + w3 * fields[m, i3]
+                + w4 * fields[m, i4]
+                + w5 * fields[m, i5]
+            )
 
 
-@njit((_V, MESH, float64, _V), cache=True)
-def reframe(values, mesh, stretch, out):
-    """A field in a frame ``stretch`` times larger, on the same mesh."""
+@njit((_M, MESH, float64, _M), cache=True)
+def reframe(fields, mesh, stretch, out):
+    """Fields (m, n) in a frame ``stretch`` times larger, on the same mesh."""
     if abs(stretch - 1.0) < 1e-12:
-        out[:] = values
+        out[:] = fields
     else:
-        n = values.size
-        transfer(
-            values, n, mesh.nodes[n - 1], mesh.edge_spacing, mesh.growth, stretch, mesh.nodes, out
-        )
+        end = mesh.nodes[mesh.nodes.size - 1]
+        transfer(fields, end, mesh.edge_spacing, mesh.growth, stretch, mesh.nodes, out)
 
 
 @njit(float64(_V, _CONST, float64), cache=True)
@@ -479,7 +485,7 @@ def following_frame(step, clock, mesh, controls):
     return max(ridden + pace * (suited - frame), 0.5 * frame)
 
 
-@njit((float64, float64, int64, _M, _V, MESH, _V, _V, _V), cache=True)
+@njit((float64, float64, int64, _M, _V, MESH, _V, _V, _M), cache=True)
 def predict(frame, step, history, fields, clock, mesh, weights, guess, shape):
     """Extrapolate the last ``history`` shapes to the new frame, as seen riding on the edge."""
     n = mesh.nodes.size
@@ -490,9 +496,10 @@ def predict(frame, step, history, fields, clock, mesh, weights, guess, shape):
     guess[:] = 0.0
     for k in range(history):
         riding = max(frame - speed * ago, 0.5 * frame)
-        reframe(fields[DEFORMATION + k], mesh, riding / clock[FRAME + k], shape)
+        row = DEFORMATION + k
+        reframe(fields[row : row + 1], mesh, riding / clock[FRAME + k], shape)
         for i in range(n):
-            guess[i] += weights[k] * shape[i]
+            guess[i] += weights[k] * shape[0, i]
         ago += clock[LAST + k]
 
 
@@ -521,12 +528,14 @@ def _move_clock(clock, step, frame, edge, force, deflection):
 @njit((BACKGROUND, float64, float64, _V, _CONST, _M), cache=True)
 def recall(background, time, frame, retardation, nodes, memory):
     """Memory of the background at ``time`` on the nodes of a frame, into rows of ``memory``."""
-    modes, n = background.values.shape
+    modes = background.values.shape[0]
+    if modes == 0:
+        return
+    transfer(
+        background.values, background.end, background.edge_spacing, background.growth,
+        frame / background.frame, nodes, memory,
+    )  # fmt: skip
     for m in range(modes):
-        transfer(
-            background.values[m], n, background.end, background.edge_spacing, background.growth,
-            frame / background.frame, nodes, memory[m],
-        )  # fmt: skip
         fading = exp(-(time - background.since) / retardation[m])
         for i in range(nodes.size):
             memory[m, i] *= fading
@@ -560,9 +569,11 @@ def advance(
     gap, pressure = newton_work[0, :n], newton_work[1, :n]
     work = np.empty((8, n))
     v, guess, standoff, scratch = work[0], work[1], work[2], work[3]
-    load, load_earlier, load_new, tip = work[4], work[5], work[6], work[7]
+    shape, load_earlier, load_new, tip = work[4:5], work[5], work[6], work[7]
     u = np.empty(n + 1)
-    memory, old = np.empty((modes, n)), np.zeros((modes, n))
+    past, old = np.empty((modes + 1, n)), np.zeros((modes, n))
+    load, memory = past[0], past[1:]
+    lags, strained = np.empty((modes, n)), np.empty((modes, n))
     remember = np.empty((modes, 5))
     weights = np.empty(3)
     count = 1
@@ -587,12 +598,11 @@ def advance(
 
         frame = following_frame(step, clock, mesh, controls)
         stretch = frame / clock[FRAME]
-        reframe(fields[LOAD], mesh, stretch, load)
-        for m in range(modes):
-            reframe(fields[MEMORY + m], mesh, stretch, memory[m])
+        reframe(fields[LOAD : MEMORY + modes], mesh, stretch, past)
         order = min(history, 2)
         if order == 2:
-            reframe(fields[LOAD_EARLIER], mesh, frame / clock[FRAME_EARLIER], load_earlier)
+            earlier = frame / clock[FRAME_EARLIER]
+            reframe(fields[LOAD_EARLIER:LOAD], mesh, earlier, work[5:6])
         else:
             load_earlier[:] = 0.0
         memory_weights(step, clock[LAST], order, compliance, retardation, remember)
@@ -617,7 +627,7 @@ def advance(
             standoff[i] = h0 - parameters.law[ORIGIN] + tip[i]
 
         extrapolation_weights(history, step, clock[LAST], clock[BEFORE], weights)
-        predict(frame, step, history, fields, clock, mesh, weights, guess, scratch)
+        predict(frame, step, history, fields, clock, mesh, weights, guess, shape)
         deflection = 0.0
         for k in range(history):
             deflection += weights[k] * clock[DEFLECTION + k]
@@ -682,16 +692,17 @@ def advance(
             continue
 
         # Accept the step.
-        loss = 0.0
         for m in range(modes):
             for i in range(n):
                 memory[m, i] += remember[m, _NEW] * load_new[i]
-                guess[i] = load_new[i] - memory[m, i] - old[m, i]
+                lags[m, i] = load_new[i] - memory[m, i] - old[m, i]
                 fields[MEMORY + m, i] = memory[m, i]
-            multiply(mesh.stiffness, guess, scratch)
+        row_products(lags, mesh.stiffness, strained)
+        loss = 0.0
+        for m in range(modes):
             product = 0.0
             for i in range(n):
-                product += guess[i] * scratch[i]
+                product += lags[m, i] * strained[m, i]
             loss += 2.0 * pi * frame * compliance[m + 1] / retardation[m] * product
         for i in range(n):
             fields[EARLIEST, i] = fields[EARLIER, i]

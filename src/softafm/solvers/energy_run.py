@@ -193,7 +193,8 @@ class Run:
             surface.functions, surface.parameters, surface.background
         )  # fmt: skip
         instantaneous, modes = parameters.compliance[0], parameters.compliance[1:]
-        stiff = min(0.2, (0.4 / self.contact.tabor_instantaneous) ** 1.5) * instantaneous
+        tabor = self.contact.tabor_instantaneous
+        stiff = instantaneous * min(0.2, (0.4 / tabor) ** 1.5 if tabor else 0.2)
         delayed = instantaneous - stiff
         surface.functions = (still, *functions[1:])
         # The clock of the fall starts at 0; the past goes on fading from where it is.

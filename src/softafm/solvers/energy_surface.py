@@ -12,7 +12,6 @@ EXTENT = 8.0
 """Radius of every mesh, in contact radii."""
 
 _COARSEST_SPACING = 0.3
-_FIRST_LEVEL = 1
 _POINTS, _WEIGHTS = np.polynomial.legendre.leggauss(16)
 
 
@@ -48,7 +47,7 @@ class Surface:
         self.target = 0.2 * strictness**0.2 / max(1.0, sharpness)
         self.growth = 0.25 * min(1.0, strictness**0.1)
         self.finest_level = max(0, ceil(log2(_COARSEST_SPACING / finest_spacing)))
-        self.level = min(_FIRST_LEVEL, self.finest_level)
+        self.level = self.first_level = self._level_for(0.4 * self._open_zone())
         self.mesh = self._mesh(self.level)
         self.meshes, self.most_nodes = 1, self.mesh.nodes.size
         self.finest_spacing, self.finest_used = self.mesh.edge_spacing, self.level
@@ -67,6 +66,16 @@ class Surface:
     def _mesh(self, level: int) -> k.Mesh:
         return k.Mesh(*unit_mesh(_COARSEST_SPACING * 2.0**-level, self.growth, EXTENT))
 
+    def _level_for(self, spacing: float) -> int:
+        """Level of the mesh whose edge spacing, in contact radii, is at most this."""
+        level = ceil(log2(_COARSEST_SPACING / spacing) - 1e-9)
+        return min(max(level, 0), self.finest_level)
+
+    def _open_zone(self) -> float:
+        """Width of the zone where the gap begins to open, before contact, in frames."""
+        tip, reach = self.contact.tip, self.contact.reach
+        return (tip.radius_at(2 * reach) - tip.radius_at(reach)) / self.open_frame
+
     @property
     def time(self) -> float:
         """The instant, s."""
@@ -80,11 +89,9 @@ class Surface:
 
     def remesh(self, coarseness: float) -> None:
         """Carry all fields to the mesh that suits a cohesive zone seen ``coarseness`` from here."""
-        level = _FIRST_LEVEL
+        self.level = self.first_level
         if coarseness > 0:
-            wanted = self.mesh.edge_spacing * self.target / coarseness
-            level = ceil(log2(_COARSEST_SPACING / wanted) - 1e-9)
-        self.level = min(max(level, 0), self.finest_level)
+            self.level = self._level_for(self.mesh.edge_spacing * self.target / coarseness)
         mesh = self._mesh(self.level)
         self.fields, self.mesh = self._carried(self.fields, mesh, 1.0), mesh
         self.meshes += 1
@@ -105,7 +112,7 @@ class Surface:
         archive, frame = self.archive
         gained = self._carried(self.fields[k.MEMORY :], archive, frame / clock[k.FRAME])
         if clock[k.EDGE] == 0:
-            self.level = min(_FIRST_LEVEL, self.finest_level)
+            self.level = self.first_level
             mesh = self._mesh(self.level)
             self.fields = self._carried(self.fields, mesh, self.open_frame / clock[k.FRAME])
             self.mesh, clock[k.FRAME] = mesh, self.open_frame
@@ -132,11 +139,9 @@ class Surface:
     def _carried(self, fields, mesh: k.Mesh, stretch: float) -> np.ndarray:
         """Return fields (m, n) on another mesh, in a frame ``stretch`` times larger."""
         old, result = self.mesh, np.empty((len(fields), mesh.nodes.size))
-        for before, after in zip(fields, result, strict=True):
-            k.transfer(
-                before, old.nodes.size, old.nodes[-1], old.edge_spacing, old.growth, stretch,
-                mesh.nodes, after,
-            )  # fmt: skip
+        k.transfer(
+            fields, old.nodes[-1], old.edge_spacing, old.growth, stretch, mesh.nodes, result
+        )
         return result
 
     def settle(self) -> np.ndarray:
@@ -218,6 +223,6 @@ def gap_origin(contact) -> float:
     """
     law = contact.surface
     if not law.attracts:
-        return contact.edge_gap - 12 * contact.reach
+        return contact.edge_gap - 20 * contact.reach
     gap = law.equilibrium_gap
     return gap + 9 * sqrt(3) * law.largest_tension / float(law.slope(gap))

@@ -6,6 +6,7 @@ from typing import Any
 import numpy as np
 
 _POINTS, _WEIGHTS = np.polynomial.legendre.leggauss(4)
+_MOST_UNEVEN = 4.0
 
 
 @dataclass(frozen=True)
@@ -76,7 +77,8 @@ class History:
     def extreme(self, values, sign: int, start=-np.inf, stop=np.inf) -> float:
         """Largest (``sign`` 1) or smallest (-1) of ``values`` (n,) between two times (s).
 
-        Refined by the parabola through the extreme step and its neighbours in the same piece.
+        Refined by the parabola through the extreme step and its neighbours in the same piece, where
+        they are about as far away on one side as on the other.
         """
         best = -np.inf
         for piece in self.pieces:
@@ -93,7 +95,7 @@ class History:
                 )
                 curvature = (y1 / x1 - y0 / x0) / (x1 - x0)
                 slope = y0 / x0 - curvature * x0
-                if curvature < 0:
+                if curvature < 0 and _MOST_UNEVEN * x1 > -x0 > x1 / _MOST_UNEVEN:
                     value -= slope**2 / (4 * curvature)
             best = max(best, value)
         return sign * float(best)

@@ -1,0 +1,41 @@
+"""A sample without memory."""
+
+from dataclasses import dataclass
+from typing import ClassVar
+
+import numpy as np
+
+from softafm._validate import poisson_ratio, positive
+from softafm.rheology.compliance import ReducedCompliance
+from softafm.rheology.solid import Solid
+
+
+@dataclass(frozen=True)
+class Elastic(Solid):
+    """Elastic half-space.
+
+    Parameters
+    ----------
+    E
+        Young's modulus, Pa.
+    poisson
+        Poisson's ratio, in (-1, 0.5].
+
+    Raises
+    ------
+    ValueError
+        If a value is out of range.
+    """
+
+    kind: ClassVar[str] = "elastic"
+    E: float
+    poisson: float
+
+    def __post_init__(self):
+        object.__setattr__(self, "E", positive("E", self.E, "Pa"))
+        object.__setattr__(self, "poisson", poisson_ratio(self.poisson))
+
+    @property
+    def reduced_compliance(self) -> ReducedCompliance:
+        """(1 − ν²)/E, without modes."""
+        return ReducedCompliance((1 - self.poisson**2) / self.E, np.zeros(0), np.zeros(0))

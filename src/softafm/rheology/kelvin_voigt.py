@@ -1,0 +1,113 @@
+"""Solids built from springs with dashpots beside them."""
+
+from dataclasses import dataclass
+from typing import ClassVar
+
+import numpy as np
+
+from softafm._validate import poisson_ratio, positive
+from softafm.rheology.compliance import ReducedCompliance
+from softafm.rheology.lists import as_many, positives
+from softafm.rheology.solid import Solid
+
+STIFF = 1e6
+"""Instantaneous modulus of a Kelvin-Voigt solid, in moduli of its spring."""
+
+
+@dataclass(frozen=True)
+class KelvinVoigt(Solid):
+    """Spring and dashpot side by side, 1/E(t) = (1 − exp(−t/τ))/E.
+
+    It has no instantaneous response, which the contact problem needs to have shapes at all: a
+    spring of 10⁶ E stands in series, so compliances are high by 1e-6/E, and what happens faster
+    than about 1e-6 τ is not that of the ideal solid.
+
+    Parameters
+    ----------
+    E
+        Young's modulus of the spring, Pa.
+    creep_time
+        Creep (retardation) time τ = η/E, s.
+    poisson
+        Poisson's ratio, in (-1, 0.5].
+
+    Raises
+    ------
+    ValueError
+        If a value is out of range.
+    """
+
+    kind: ClassVar[str] = "kelvin-voigt"
+    E: float
+    creep_time: float
+    poisson: float
+
+    def __post_init__(self):
+        object.__setattr__(self, "E", positive("E", self.E, "Pa"))
+        object.__setattr__(self, "creep_time", positive("creep_time", self.creep_time, "s"))
+        object.__setattr__(self, "poisson", poisson_ratio(self.poisson))
+
+    @classmethod
+    def from_viscosity(cls, E: float, viscosity: float, poisson: float) -> "KelvinVoigt":
+        """Build from the viscosity η (Pa s) of the dashpot in uniaxial extension: τ = η/E."""
+        E, viscosity = positive("E", E, "Pa"), positive("viscosity", viscosity, "Pa s")
+        return cls(E, viscosity / E, poisson)
+
+    @classmethod
+    def from_shear(cls, G: float, viscosity: float, poisson: float) -> "KelvinVoigt":
+        """Build from shear modulus (Pa) and shear viscosity (Pa s): E = 2(1 + ν)G, τ = η/G."""
+        G, viscosity = positive("G", G, "Pa"), positive("viscosity", viscosity, "Pa s")
+        return cls(2 * (1 + poisson_ratio(poisson)) * G, viscosity / G, poisson)
+
+    @property
+    def reduced_compliance(self) -> ReducedCompliance:
+        """One mode, J_1 = (1 − ν²)/E, and an instantaneous part of 1e-6 of it."""
+        mode = (1 - self.poisson**2) / self.E
+        return ReducedCompliance(mode / STIFF, np.array([mode]), np.array([self.creep_time]))
+
+
+@dataclass(frozen=True)
+class GeneralizedKelvinVoigt(Solid):
+    """Chain of Kelvin-Voigt elements, 1/E(t) = 1/E0 + Σ J_m (1 − exp(−t/τ_m)).
+
+    Parameters
+    ----------
+    E0
+        Short-term Young's modulus, Pa.
+    compliances
+        Uniaxial compliances J_m, 1/Pa; the factor 1 − ν² is applied inside.
+    retardation_times
+        Times τ_m, s, as many as compliances.
+    poisson
+        Poisson's ratio, in (-1, 0.5].
+
+    Raises
+    ------
+    ValueError
+        If a value is out of range or the numbers of compliances and times differ.
+    """
+
+    kind: ClassVar[str] = "generalized-kelvin-voigt"
+    E0: float
+    compliances: tuple[float, ...]
+    retardation_times: tuple[float, ...]
+    poisson: float
+
+    def __post_init__(self):
+        object.__setattr__(self, "E0", positive("E0", self.E0, "Pa"))
+        object.__setattr__(self, "poisson", poisson_ratio(self.poisson))
+        compliances = positives("compliances", self.compliances, "1/Pa")
+        times = positives("retardation_times", self.retardation_times, "s")
+        object.__setattr__(self, "compliances", compliances)
+        object.__setattr__(self, "retardation_times", times)
+        as_many("retardation_times", times, "compliances", compliances)
+
+    @property
+    def reduced_compliance(self) -> ReducedCompliance:
+        """(1 − ν²) times the uniaxial chain."""
+        factor = 1 - self.poisson**2
+        return ReducedCompliance(
+            factor / self.E0,
+            factor * np.array(self.compliances, float),
+            np.array(self.retardation_times, float),
+        )

@@ -1,0 +1,165 @@
+"""Samples built from springs with dashpots behind them: a Prony series of the modulus."""
+
+from dataclasses import dataclass
+from functools import cached_property
+from math import fsum
+from typing import ClassVar
+
+import numpy as np
+
+from softafm._validate import finite, poisson_ratio, positive
+from softafm.rheology.compliance import ReducedCompliance
+from softafm.rheology.dma import fit_prony
+from softafm.rheology.interconversion import prony_to_chain
+from softafm.rheology.lists import as_many, positives
+from softafm.rheology.solid import Solid
+
+
+@dataclass(frozen=True)
+class Maxwell(Solid):
+    """Spring and dashpot in a row: a fluid, E(t) = E0 exp(−t/λ), 1/E(t) = (1 + t/λ)/E0.
+
+    Parameters
+    ----------
+    E0
+        Short-term Young's modulus, Pa.
+    relaxation_time
+        Stress-relaxation time λ, s; the viscosity in extension is E0·λ.
+    poisson
+        Poisson's ratio, in (-1, 0.5]; constant, so the sample also flows in volume unless it
+        is 0.5.
+
+    Raises
+    ------
+    ValueError
+        If a value is out of range.
+    """
+
+    kind: ClassVar[str] = "maxwell"
+    E0: float
+    relaxation_time: float
+    poisson: float
+
+    def __post_init__(self):
+        object.__setattr__(self, "E0", positive("E0", self.E0, "Pa"))
+        time = positive("relaxation_time", self.relaxation_time, "s")
+        object.__setattr__(self, "relaxation_time", time)
+        object.__setattr__(self, "poisson", poisson_ratio(self.poisson))
+
+    @classmethod
+    def from_viscosity(cls, E0: float, viscosity: float, poisson: float) -> "Maxwell":
+        """Build from the viscosity η_E in uniaxial *extension* (Pa s): λ = η_E/E0.
+
+        It is 2(1 + ν) times the shear viscosity η, Trouton's 3η at ν = 0.5; see ``from_shear``.
+        """
+        E0, viscosity = positive("E0", E0, "Pa"), positive("viscosity", viscosity, "Pa s")
+        return cls(E0, viscosity / E0, poisson)
+
+    @classmethod
+    def from_shear(cls, G0: float, viscosity: float, poisson: float) -> "Maxwell":
+        """Build from shear modulus (Pa) and *shear* viscosity (Pa s): E0 = 2(1 + ν)G0, λ = η/G0."""
+        G0, viscosity = positive("G0", G0, "Pa"), positive("viscosity", viscosity, "Pa s")
+        return cls(2 * (1 + poisson_ratio(poisson)) * G0, viscosity / G0, poisson)
+
+    @property
+    def reduced_compliance(self) -> ReducedCompliance:
+        """No mode, but steady flow: φ = (1 − ν²)/(E0 λ)."""
+        factor = (1 - self.poisson**2) / self.E0
+        return ReducedCompliance(factor, np.zeros(0), np.zeros(0), factor / self.relaxation_time)
+
+
+@dataclass(frozen=True)
+class GeneralizedMaxwell(Solid):
+    """Prony series of the relaxation modulus, E(t) = E_inf + Σ E_k exp(−t/λ_k).
+
+    Parameters
+    ----------
+    E_inf
+        Long-term Young's modulus, Pa; zero if the sample flows.
+    moduli
+        Young's moduli E_k, Pa; zeros count for nothing.
+    relaxation_times
+        Stress-relaxation times λ_k, s, as many as moduli and in any order; terms of equal times
+        are added.
+    poisson
+        Poisson's ratio, in (-1, 0.5].
+
+    Raises
+    ------
+    ValueError
+        If a value is out of range, the numbers of moduli and times differ, or all moduli are zero.
+    """
+
+    kind: ClassVar[str] = "generalized-maxwell"
+    E_inf: float
+    moduli: tuple[float, ...]
+    relaxation_times: tuple[float, ...]
+    poisson: float
+
+    def __post_init__(self):
+        E_inf = finite("E_inf", self.E_inf, "Pa")
+        if E_inf < 0:
+            raise ValueError(f"E_inf = {E_inf:g} Pa: must be positive, or 0 if the sample flows")
+        moduli = positives("moduli", self.moduli, "Pa", zeros=True)
+        times = positives("relaxation_times", self.relaxation_times, "s")
+        as_many("relaxation_times", times, "moduli", moduli)
+        if E_inf == 0 and not any(moduli):
+            raise ValueError("moduli has no entry above 0 Pa: must have one where E_inf = 0 Pa")
+        object.__setattr__(self, "E_inf", E_inf)
+        object.__setattr__(self, "moduli", moduli)
+        object.__setattr__(self, "relaxation_times", times)
+        object.__setattr__(self, "poisson", poisson_ratio(self.poisson))
+
+    @classmethod
+    def from_shear(
+        cls, G_inf: float, shear_moduli, relaxation_times, poisson: float
+    ) -> "GeneralizedMaxwell":
+        """Build from shear moduli (Pa) at constant Poisson's ratio: E = 2(1 + ν)G."""
+        factor = 2 * (1 + poisson_ratio(poisson))
+        G_inf = finite("G_inf", G_inf, "Pa")
+        if G_inf < 0:
+            raise ValueError(f"G_inf = {G_inf:g} Pa: must be positive, or 0 if the sample flows")
+        shear_moduli = positives("shear_moduli", shear_moduli, "Pa", zeros=True)
+        moduli = tuple(factor * G for G in shear_moduli)
+        return cls(factor * G_inf, moduli, relaxation_times, poisson)
+
+    @classmethod
+    def from_ratios(
+        cls, E0: float, ratios, relaxation_times, poisson: float
+    ) -> "GeneralizedMaxwell":
+        """Build from a normalised series, E_k = ratio_k·E0, E_inf = (1 − Σ ratios)·E0.
+
+        Finite-element programs state materials so: the short-term modulus E0 (Pa) and ratios of
+        no unit, of which the sum is at most 1; it flows if the sum is 1.
+        """
+        E0 = positive("E0", E0, "Pa")
+        ratios = positives("ratios", ratios, "(no unit)", zeros=True)
+        rest = 1 - fsum(ratios)
+        if rest < -1e-12:
+            raise ValueError(
+                f"ratios add up to {fsum(ratios):.10g}: must add up to at most 1, "
+                "for what remains is E_inf/E0"
+            )
+        E_inf = E0 * rest if rest > 1e-12 else 0.0
+        return cls(E_inf, tuple(E0 * ratio for ratio in ratios), relaxation_times, poisson)
+
+    @classmethod
+    def from_dma(
+        cls, frequency, storage, loss, poisson: float, per_decade: float = 2
+    ) -> "GeneralizedMaxwell":
+        """Fit measured Young's moduli: frequency (Hz, rising), storage and loss modulus (Pa).
+
+        Non-negative least squares of the relative misfit, over relaxation times so many a decade;
+        ``softafm.rheology.dma_misfit`` tells how well the result fits. Beyond the measured
+        frequencies the fit is an extrapolation.
+        """
+        return cls(*fit_prony(frequency, storage, loss, per_decade), poisson)
+
+    @cached_property
+    def reduced_compliance(self) -> ReducedCompliance:
+        """(1 − ν²) times the exact creep compliance of the series."""
+        instantaneous, modes, times, fluidity = prony_to_chain(
+            self.E_inf, self.moduli, self.relaxation_times
+        )
+        factor = 1 - self.poisson**2
+        return ReducedCompliance(factor * instantaneous, factor * modes, times, factor * fluidity)

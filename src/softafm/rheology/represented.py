@@ -1,0 +1,75 @@
+"""Samples of a continuous spectrum, represented by few modes over the times of an experiment."""
+
+from abc import abstractmethod
+from functools import cached_property
+from math import pi
+
+from softafm._validate import finite
+from softafm.rheology.compliance import ReducedCompliance
+from softafm.rheology.lists import samples
+from softafm.rheology.series import Response, Series, fewest_modes
+from softafm.rheology.solid import Solid
+
+
+def exponent_of(value: float) -> float:
+    """Return ``value`` if it lies between those of a spring, 0, and of a dashpot, 1."""
+    number = finite("exponent", value, "(no unit)")
+    if not 0 < number < 1:
+        raise ValueError(f"exponent = {number:g}: must be above 0 (elastic) and below 1 (viscous)")
+    return number
+
+
+class Represented(Solid):
+    """A sample known exactly, of which solvers take a chain that keeps ``error`` over ``window``.
+
+    Creep, relaxation and moduli are those of the chain; ``exact_`` ones are of the law itself.
+    """
+
+    window: tuple[float, float]
+    error: float
+
+    @property
+    @abstractmethod
+    def _response(self) -> Response:
+        """The law, with times in units of the shortest of the window."""
+
+    @property
+    @abstractmethod
+    def _scale(self) -> float:
+        """The unit of its uniaxial compliance, 1/Pa."""
+
+    @cached_property
+    def _series(self) -> Series:
+        return fewest_modes(self._response, self.window, self.error)
+
+    @property
+    def represented_error(self) -> float:
+        """Largest relative error of the chain in the window, of creep and complex compliance."""
+        return self._series.error
+
+    @property
+    def mode_count(self) -> int:
+        """Number of modes that a solver carries, steady flow included."""
+        chain = self._series.compliance
+        return chain.modes.size + (chain.fluidity > 0)
+
+    @cached_property
+    def reduced_compliance(self) -> ReducedCompliance:
+        """(1 − ν²) times the chain that stands for the law."""
+        factor = (1 - self.poisson**2) * self._scale
+        time, chain = self.window[0], self._series.compliance
+        return ReducedCompliance(
+            factor * chain.instantaneous,
+            factor * chain.modes,
+            time * chain.retardation_times,
+            factor * chain.fluidity / time,
+        )
+
+    def exact_creep_compliance(self, time):
+        """Uniaxial creep compliance of the law itself at ``time`` > 0 (s), 1/Pa."""
+        return self._scale * self._response.creep(samples("time", time, "s") / self.window[0])
+
+    def exact_complex_compliance(self, frequency):
+        """Uniaxial complex compliance of the law itself at ``frequency`` > 0 (Hz), 1/Pa."""
+        angular = 2 * pi * samples("frequency", frequency, "Hz")
+        return self._scale * self._response.complex_compliance(angular * self.window[0])

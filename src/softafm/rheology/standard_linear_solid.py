@@ -1,0 +1,79 @@
+"""The solid of one creep time between two moduli."""
+
+from dataclasses import dataclass
+from typing import ClassVar
+
+import numpy as np
+
+from softafm._validate import poisson_ratio, positive
+from softafm.rheology.compliance import ReducedCompliance
+from softafm.rheology.solid import Solid
+
+
+@dataclass(frozen=True)
+class StandardLinearSolid(Solid):
+    """Standard linear solid, 1/E(t) = 1/E_inf + (1/E0 − 1/E_inf)·exp(−t/τ).
+
+    Parameters
+    ----------
+    E0, E_inf
+        Short- and long-term Young's modulus, Pa; E_inf ≤ E0.
+    creep_time
+        Creep (retardation) time τ, s. Not the stress-relaxation time: see
+        ``from_relaxation_time``.
+    poisson
+        Poisson's ratio, in (-1, 0.5].
+
+    Raises
+    ------
+    ValueError
+        If a value is out of range or E_inf > E0.
+
+    References
+    ----------
+    Rajabifar et al. 2021, equation (4).
+    """
+
+    kind: ClassVar[str] = "standard-linear-solid"
+    E0: float
+    E_inf: float
+    creep_time: float
+    poisson: float
+
+    def __post_init__(self):
+        object.__setattr__(self, "E0", positive("E0", self.E0, "Pa"))
+        object.__setattr__(self, "E_inf", positive("E_inf", self.E_inf, "Pa"))
+        object.__setattr__(self, "creep_time", positive("creep_time", self.creep_time, "s"))
+        object.__setattr__(self, "poisson", poisson_ratio(self.poisson))
+        if self.E_inf > self.E0:
+            raise ValueError(
+                f"E_inf = {self.E_inf:g} Pa: must be at most E0 = {self.E0:g} Pa "
+                "(a solid softens as it relaxes)"
+            )
+
+    @classmethod
+    def from_relaxation_time(
+        cls, E0: float, E_inf: float, relaxation_time: float, poisson: float
+    ) -> "StandardLinearSolid":
+        """Build from the stress-relaxation time τ_σ (s): τ = τ_σ·E0/E_inf."""
+        relaxation_time = positive("relaxation_time", relaxation_time, "s")
+        E0, E_inf = positive("E0", E0, "Pa"), positive("E_inf", E_inf, "Pa")
+        return cls(E0, E_inf, relaxation_time * E0 / E_inf, poisson)
+
+    @classmethod
+    def from_shear(
+        cls, G0: float, G_inf: float, creep_time: float, poisson: float
+    ) -> "StandardLinearSolid":
+        """Build from shear moduli (Pa) at constant Poisson's ratio: E = 2(1 + ν)G."""
+        G0, G_inf = positive("G0", G0, "Pa"), positive("G_inf", G_inf, "Pa")
+        factor = 2 * (1 + poisson_ratio(poisson))
+        return cls(factor * G0, factor * G_inf, creep_time, poisson)
+
+    @property
+    def reduced_compliance(self) -> ReducedCompliance:
+        """One mode, J_1 = (1 − ν²)(1/E_inf − 1/E0); none when the moduli are equal."""
+        factor = 1 - self.poisson**2
+        if self.E_inf == self.E0:
+            return ReducedCompliance(factor / self.E0, np.zeros(0), np.zeros(0))
+        mode = factor * (1 / self.E_inf - 1 / self.E0)
+        return ReducedCompliance(factor / self.E0, np.array([mode]), np.array([self.creep_time]))

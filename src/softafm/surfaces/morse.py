@@ -1,0 +1,69 @@
+"""The Morse law."""
+
+from dataclasses import dataclass, field
+from math import log
+from typing import ClassVar
+
+import numpy as np
+
+from softafm._validate import positive
+from softafm.formulas import Term
+from softafm.surfaces.law import SurfaceLaw
+from softafm.surfaces.limits import length
+
+
+@dataclass(frozen=True)
+class Morse(SurfaceLaw):
+    """Morse potential per area, Φ(h) = W·(e^(−2x) − 2e^(−x)) with x = (h − z0)/decay.
+
+    Parameters
+    ----------
+    work_of_adhesion
+        W, J/m².
+    z0
+        Equilibrium gap, where the pressure vanishes, m.
+    decay
+        Length over which the attraction falls e-fold, m.
+
+    Raises
+    ------
+    ValueError
+        If a value is out of range.
+
+    References
+    ----------
+    P. M. Morse, *Phys. Rev.* 34, 57 (1929), for the atoms of a molecule.
+    """
+
+    kind: ClassVar[str] = "morse"
+    overlaps: ClassVar[bool] = True
+    work_of_adhesion: float = field()  # without a default, whatever the base class has
+    z0: float
+    decay: float
+
+    def __post_init__(self):
+        W = positive("work_of_adhesion", self.work_of_adhesion, "J/m²")
+        object.__setattr__(self, "work_of_adhesion", W)
+        object.__setattr__(self, "z0", length("z0", self.z0))
+        object.__setattr__(self, "decay", length("decay", self.decay))
+
+    @property
+    def equilibrium_gap(self) -> float:
+        """Gap of zero pressure, z0, m."""
+        return self.z0
+
+    @property
+    def gap_of_largest_tension(self) -> float:
+        """Gap where the attraction is strongest, z0 + ln(2)·decay, m."""
+        return self.z0 + log(2) * self.decay
+
+    @property
+    def terms(self) -> tuple[Term]:
+        """p(h) = 2W/decay·(e^(−2x) − e^(−x))."""
+        return (Term(_morse, (self.work_of_adhesion, self.z0, self.decay)),)
+
+
+def _morse(h, W, z0, decay):
+    far = np.exp((z0 - h) / decay)
+    rate = 2 / decay * W * far
+    return rate * (far - 1), rate / decay * (1 - 2 * far), W * far * (far - 2)

@@ -1,0 +1,16 @@
+"""Angles of tips: in radians, refused with a word on degrees."""
+
+from math import degrees, pi
+
+from softafm._validate import finite
+
+
+def half_angle_of(value: float) -> float:
+    """Return the half angle of a cone, rad, if it lies between 0 and π/2."""
+    angle = finite("half_angle", value, "rad")
+    if not 0 < angle < pi / 2:
+        raise ValueError(
+            f"half_angle = {angle:g} rad: must be above 0 and below pi/2 rad, that is 90 degrees "
+            f"({angle:g} rad are {degrees(angle):.4g} degrees; math.radians converts)"
+        )
+    return angle
