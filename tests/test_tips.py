@@ -162,7 +162,7 @@ def test_measured_paraboloids_are_met_exactly_and_others_closely():
 
 def test_profiles_are_read_from_files(tmp_path):
     path = tmp_path / "tip.csv"
-    path.write_text("r (nm),note,Height (nm)\n0,a,1\n1,b,1.5\n\n2,c,3\n3,d,5.5\n")
+    path.write_text("Radius (nm),note,Height (nm)\n0,a,1\n1,b,1.5\n\n2,c,3\n3,d,5.5\n")
     tip = tips.read_tip_profile(path)
     assert tip.r == pytest.approx((0.0, 1e-9, 2e-9, 3e-9), rel=1e-15)
     assert tip.height == pytest.approx((1e-9, 1.5e-9, 3e-9, 5.5e-9), rel=1e-15)
@@ -175,7 +175,7 @@ def test_profiles_are_read_from_files(tmp_path):
 @pytest.mark.parametrize(
     ("text", "message"),
     [
-        ("", r"no column 'radius' with a unit; .* 'radius \(nm\),height \(nm\)'"),
+        ("", r"is empty; its first line must read, .* 'radius \(nm\),height \(nm\)'"),
         ("radius,height\n0,0\n", "no column 'radius' with a unit"),
         ("radius (nm)\n0\n", "no column 'height' with a unit"),
         ("radius (nm),height (kg)\n0,0\n", r"'height \(kg\)' must name a unit of a length"),
@@ -390,10 +390,7 @@ RIGID = [
     tips.Cone(radians(35), 0.2 * R),
     tips.Hyperboloid(R, radians(20)),
     tips.PowerLawTip(4.0, 10e-9, R),
-    pytest.param(
-        tips.FlatPunch(R, 0.1 * R),
-        marks=pytest.mark.xfail(reason="the mesh does not resolve the rim before there is contact"),
-    ),
+    tips.FlatPunch(R, 0.1 * R),
 ]
 
 
@@ -401,6 +398,6 @@ RIGID = [
 def test_a_rigid_sample_feels_the_sum_of_all_pressures(tip):
     law = sa.LennardJones.from_work_of_adhesion(W=0.05, z0=3e-10)
     contact = sa.Contact(tip, sa.Elastic(1e16, 0.0), law)
-    curve = sa.force_distance(contact, sa.Triangle(3e-9, 0.28e-9, 1e-6))
+    curve = sa.force_distance(contact, sa.Triangle(3e-9, 0.28e-9, 1e-6), tolerance=1e-3)
     rigid = contact.rigid_force(curve.tip_height.values)
     assert np.abs(curve.force.values - rigid).max() < 1e-3 * np.abs(rigid).max()

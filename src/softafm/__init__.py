@@ -2,7 +2,7 @@
 
 __version__ = "0.1.0"
 
-from softafm import solvers
+from softafm import indentation, samples, solvers
 from softafm.animation import animate
 from softafm.cantilever import Cantilever
 from softafm.contact import Contact
@@ -13,31 +13,99 @@ from softafm.modes.spectroscopy import force_spectroscopy
 from softafm.modes.tapping import tapping_cycle
 from softafm.motions import Sine, Trajectory, Triangle
 from softafm.results import export, load, save
-from softafm.rheology import Elastic, GeneralizedKelvinVoigt, StandardLinearSolid
+from softafm.rheology import (
+    Elastic,
+    FractionalStandardLinearSolid,
+    GeneralizedKelvinVoigt,
+    GeneralizedMaxwell,
+    KelvinVoigt,
+    Maxwell,
+    PowerLaw,
+    StandardLinearSolid,
+    read_dma,
+)
 from softafm.storyboard import plot_profiles
-from softafm.surfaces import LennardJones
-from softafm.tips import Paraboloid
+from softafm.surfaces import (
+    DLVO,
+    DMT,
+    CustomSurface,
+    Dugdale,
+    Exponential,
+    LennardJones,
+    Morse,
+    Repulsion,
+    SumOfLaws,
+    SurfaceLaw,
+    Tabulated,
+    VanDerWaals,
+    VanDerWaalsAttraction,
+    read_law,
+)
+from softafm.tip_drawing import plot_tip
+from softafm.tips import (
+    Cone,
+    CustomTip,
+    FlatPunch,
+    Hyperboloid,
+    MeasuredTip,
+    Paraboloid,
+    PowerLawTip,
+    Sphere,
+    Tip,
+    read_tip_profile,
+)
 
 __all__ = [
+    "DLVO",
+    "DMT",
     "AccuracyWarning",
     "Cantilever",
+    "Cone",
     "Contact",
+    "CustomSurface",
+    "CustomTip",
     "DivergedError",
+    "Dugdale",
     "Elastic",
+    "Exponential",
+    "FlatPunch",
+    "FractionalStandardLinearSolid",
     "GeneralizedKelvinVoigt",
+    "GeneralizedMaxwell",
+    "Hyperboloid",
+    "KelvinVoigt",
     "LennardJones",
+    "Maxwell",
+    "MeasuredTip",
+    "Morse",
     "Paraboloid",
+    "PowerLaw",
+    "PowerLawTip",
+    "Repulsion",
     "Sine",
+    "Sphere",
     "StandardLinearSolid",
+    "SumOfLaws",
+    "SurfaceLaw",
+    "Tabulated",
+    "Tip",
     "Trajectory",
     "Triangle",
+    "VanDerWaals",
+    "VanDerWaalsAttraction",
     "animate",
     "approach_curve",
     "export",
     "force_distance",
     "force_spectroscopy",
+    "indentation",
     "load",
     "plot_profiles",
+    "plot_tip",
+    "read_dma",
+    "read_law",
+    "read_tip_profile",
+    "samples",
     "save",
     "solvers",
     "tapping_cycle",

@@ -12,12 +12,12 @@ from softafm._validate import finite
 class Shape(NamedTuple):
     """What of a term decides how it is compiled: its function and its number of parameters.
 
-    ``function(x, a, b, ...)`` takes ``count`` parameters one by one, or with ``count`` None all of
-    them as one array.
+    ``function(x, a, b, ...)`` takes so many ``parameters`` one by one, or with None all of them as
+    one array.
     """
 
     function: Callable
-    count: int | None
+    parameters: int | None
 
 
 class Term(NamedTuple):

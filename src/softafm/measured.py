@@ -1,47 +1,54 @@
-"""Read a measured motion from a CSV file."""
+"""Read measured columns, and motions, from CSV files whose headers name their units."""
 
 import csv
 import re
+from collections.abc import Mapping
 from pathlib import Path
 
 import numpy as np
 
 from softafm.motions import Trajectory
-from softafm.units import LENGTH, TIME, read_quantity
+from softafm.units import LENGTH, TIME, Kind, read_quantity
 
 LARGEST_FILE = 100_000_000
 _COLUMN = re.compile(r"\s*(\w+)\s*[(\[](.*)[)\]]\s*")
 
 
 def read_trajectory(path: Path) -> Trajectory:
-    """Read columns ``time`` and ``height`` of a CSV file whose header names their units.
+    """Read columns ``time`` and ``height`` of a CSV file; see ``read_columns``."""
+    time, height = read_columns(path, {"time": TIME, "height": LENGTH}, "time (us),height (nm)")
+    return Trajectory(time, height)
 
-    The header reads, for example, ``time (us),height (nm)``; other columns are ignored.
+
+def read_columns(path: str | Path, columns: Mapping[str, Kind], example: str) -> list[np.ndarray]:
+    """Read columns of a CSV file by name, in SI, in the order that they are asked for.
+
+    The header names the units, as ``example`` does; other columns are ignored.
 
     Raises
     ------
     ValueError
         If the file cannot be read, lacks a column or a unit, or holds something that is not a
-        motion; the message names the line.
+        number; the message names the line.
     """
     try:
-        rows = list(csv.reader(_text(path).splitlines()))
+        rows = list(csv.reader(_text(Path(path)).splitlines()))
     except csv.Error as error:
         raise ValueError(f"is not a CSV file: {error}") from None
     if not rows:
-        raise ValueError("is empty; its first line must read, for example, 'time (us),height (nm)'")
-    (i, second), (j, metre) = _column(rows[0], "time", TIME), _column(rows[0], "height", LENGTH)
+        raise ValueError(f"is empty; its first line must read, for example, '{example}'")
+    places = [_column(rows[0], name, kind, example) for name, kind in columns.items()]
     samples = []
     for line, row in enumerate(rows[1:], start=2):
         if not any(entry.strip() for entry in row):
             continue
         try:
-            samples.append((float(row[i]), float(row[j])))
+            samples.append([float(row[index]) * unit for index, unit in places])
         except (ValueError, IndexError):
             shown = ",".join(row)[:60]
-            raise ValueError(f"line {line} ({shown!r}) must hold a time and a height") from None
-    time, height = np.array(samples, float).reshape(-1, 2).T
-    return Trajectory(time * second, height * metre)
+            wanted = " and a ".join(columns)
+            raise ValueError(f"line {line} ({shown!r}) must hold a {wanted}") from None
+    return list(np.array(samples, float).reshape(-1, len(places)).T)
 
 
 def _text(path: Path) -> str:
@@ -57,7 +64,7 @@ def _text(path: Path) -> str:
         raise ValueError("is not text in UTF-8") from None
 
 
-def _column(header: list[str], name: str, kind) -> tuple[int, float]:
+def _column(header: list[str], name: str, kind: Kind, example: str) -> tuple[int, float]:
     """Return the index of the column ``name`` and its unit in SI."""
     for index, entry in enumerate(header):
         match = _COLUMN.fullmatch(entry)
@@ -69,6 +76,5 @@ def _column(header: list[str], name: str, kind) -> tuple[int, float]:
                     f"column {entry.strip()[:60]!r} must name a unit of {kind.noun}"
                 ) from None
     raise ValueError(
-        f"has no column '{name}' with a unit; its first line must read, for example, "
-        "'time (us),height (nm)'"
+        f"has no column '{name}' with a unit; its first line must read, for example, '{example}'"
     )

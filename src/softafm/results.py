@@ -1,5 +1,6 @@
 """Results as xarray datasets: names, units, provenance, saving, loading, export."""
 
+import inspect
 import json
 import os
 import tempfile
@@ -80,11 +81,26 @@ def _swept(name: str) -> tuple[str, str]:
 def describe(thing) -> dict:
     """Return the kind and the parameters (SI) of a tip, sample, law, motion, solver or stepper."""
     if is_dataclass(thing):
-        values = {f.name: getattr(thing, f.name) for f in fields(thing)}
-        values = {name: describe(v) if is_dataclass(v) else v for name, v in values.items()}
+        values = {f.name: _described(getattr(thing, f.name)) for f in fields(thing)}
     else:
         values = {"time": thing.time.tolist(), "height": thing.heights.tolist()}
     return {"kind": thing.kind, **values}
+
+
+def _described(value):
+    """Return a parameter as JSON can hold it: of a user's function name and text."""
+    if is_dataclass(value):
+        return describe(value)
+    if isinstance(value, tuple):
+        return [_described(entry) for entry in value]
+    if not callable(value):
+        return value
+    function = getattr(value, "py_func", value)
+    try:
+        source = inspect.getsource(function)
+    except (OSError, TypeError):  # it was not defined in a file
+        source = None
+    return {"name": f"{function.__module__}.{function.__qualname__}", "source": source}
 
 
 def dataset(

@@ -6,6 +6,7 @@ from typing import Any
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.layout_engine import ConstrainedLayoutEngine
 from matplotlib.ticker import EngFormatter, LogLocator
 
 from softafm.drawing import COLOURS, PREFIXES, RETRACT, factor_of
@@ -16,6 +17,7 @@ from softafm.rheology.represented import Represented
 from softafm.rheology.solid import Solid
 
 _SAMPLES = 300
+_DEEPEST = 1e8
 _POINTS: dict[str, Any] = {
     "linestyle": "none",
     "marker": "o",
@@ -56,7 +58,7 @@ def plot_rheology(
     time = np.geomspace(shortest, longest, _SAMPLES)
     frequency = 1 / (2 * pi * time[::-1])
 
-    figure = Figure(figsize=(10.4, 4.2), dpi=150, layout="constrained")
+    figure = Figure(figsize=(10.4, 4.2), dpi=150, layout=ConstrainedLayoutEngine(wspace=0.06))
     against_time, against_frequency = figure.subplots(1, 2)
     against_compliance = against_time.twinx()
     relaxation, creep = sample.relaxation_modulus(time), sample.creep_compliance(time)
@@ -114,9 +116,9 @@ def _logarithmic(ax: Axes, title: str, unit: str, right: bool | None = None) -> 
     ax.xaxis.set_major_locator(LogLocator(numticks=8))
     ax.xaxis.set_major_formatter(EngFormatter())
     ax.margins(x=0)
-    sides = {"left": right is not True, "right": right is not False}
-    ax.tick_params(direction="in", which="both", top=True, **sides)
+    left, right = right is not True, right is not False
+    ax.tick_params(direction="in", which="both", top=True, left=left, right=right)
     low, high = ax.get_ylim()
     middle = (low * high) ** 0.5
-    # Half a decade at least: a constant is shown as one, not as its round-off.
-    ax.set_ylim(min(low, middle / 2), max(high, 2 * middle))
+    # A constant is shown as one, not as its round-off; an exponential decay not to its end.
+    ax.set_ylim(max(min(low, middle / 2), high / _DEEPEST), max(high, 2 * middle))

@@ -11,21 +11,62 @@ from pathlib import Path
 from typing import Annotated, Any, ClassVar, Literal, get_args, get_origin, get_type_hints
 
 import numpy as np
-from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, ValidationInfo, create_model
+from pydantic import (
+    BaseModel,
+    BeforeValidator,
+    ConfigDict,
+    Field,
+    ValidationError,
+    ValidationInfo,
+    create_model,
+    field_validator,
+)
 
 from softafm import units
 from softafm._validate import finite, positive, tolerance_of, whole
 from softafm.cantilever import Cantilever
 from softafm.measured import read_trajectory
 from softafm.motions import Sine, Trajectory, Triangle
-from softafm.refusals import all_of, one_of
-from softafm.rheology import Elastic, GeneralizedKelvinVoigt, StandardLinearSolid
+from softafm.refusals import all_of, one_of, problem
+from softafm.rheology import (
+    Elastic,
+    FractionalStandardLinearSolid,
+    GeneralizedKelvinVoigt,
+    GeneralizedMaxwell,
+    KelvinVoigt,
+    Maxwell,
+    PowerLaw,
+    StandardLinearSolid,
+    read_dma,
+)
+from softafm.samples import NAMED
 from softafm.solvers.attard import Attard
 from softafm.solvers.energy import Energy
 from softafm.solvers.enhanced import EnhancedAttard
 from softafm.solvers.stepping import AdamsBashforth, ForwardEuler, RungeKutta4, Stepper
-from softafm.surfaces import LennardJones
-from softafm.tips import Paraboloid
+from softafm.surfaces import (
+    DLVO,
+    DMT,
+    Dugdale,
+    Exponential,
+    LennardJones,
+    Morse,
+    Repulsion,
+    SumOfLaws,
+    SurfaceLaw,
+    VanDerWaals,
+    VanDerWaalsAttraction,
+    read_law,
+)
+from softafm.tips import (
+    Cone,
+    FlatPunch,
+    Hyperboloid,
+    Paraboloid,
+    PowerLawTip,
+    Sphere,
+    read_tip_profile,
+)
 
 _MOST_RATIOS = 1000
 
@@ -127,13 +168,23 @@ Newtons = Annotated[float, _read(units.FORCE), _described(units.FORCE)]
 Stiffness = Annotated[float, _read(units.STIFFNESS), _described(units.STIFFNESS)]
 Joules = Annotated[float, _read(units.ENERGY), _described(units.ENERGY)]
 JoulesPerArea = Annotated[float, _read(units.ENERGY_PER_AREA), _described(units.ENERGY_PER_AREA)]
+Pressure = Annotated[float, _read(units.PRESSURE), _described(units.PRESSURE)]
+Angle = Annotated[float, _read(units.ANGLE), _described(units.ANGLE)]
+Voltage = Annotated[float, _read(units.VOLTAGE), _described(units.VOLTAGE)]
+Temperature = Annotated[float, _read(units.TEMPERATURE), _described(units.TEMPERATURE)]
+Viscosity = Annotated[float, _read(units.VISCOSITY), _described(units.VISCOSITY)]
+Concentration = Annotated[float, _read(units.CONCENTRATION), _described(units.CONCENTRATION)]
 Compliances = Annotated[
     tuple[Annotated[float, _read(units.COMPLIANCE)], ...],
     BeforeValidator(_list),
     _described(units.COMPLIANCE, "a list, each "),
 ]
+Moduli = Annotated[
+    tuple[Modulus, ...], BeforeValidator(_list), _described(units.MODULUS, "a list, each ")
+]
 Times = Annotated[tuple[Time, ...], BeforeValidator(_list), _described(units.TIME, "a list, each ")]
 Number = Annotated[float, BeforeValidator(_number), Field(description="a number, such as 0.49")]
+Numbers = Annotated[tuple[Number, ...], BeforeValidator(_list)]
 QualityFactor = Annotated[
     float, BeforeValidator(_number), Field(description="a number, such as 430")
 ]
@@ -358,41 +409,161 @@ class Thing(Table):
             needed, known = _keys_of(constructor)
             if set(needed) <= given.keys() <= set(known):
                 return constructor(**{known[key]: value for key, value in given.items()})
-        ways = ", or ".join(all_of(_keys_of(make)[0]) for make in self.constructors)
-        raise ValueError(f"give {ways}; found {', '.join(given) or 'none of them'}")
+        common = _needed_by_all(self.constructors)
+        ways = [[k for k in _keys_of(c)[0] if k not in common] for c in self.constructors]
+        found = ", ".join(key for key in type(self).model_fields if key in given.keys() - common)
+        raise ValueError(f"give {', or '.join(map(all_of, ways))}; found {found or 'none of them'}")
 
 
 def _thing(*constructors: Callable) -> type[Thing]:
     """Return the table of what a class, or another of its constructors, makes."""
-    keys: dict[str, Any] = {}
-    for constructor in constructors:
-        keys |= {key: (_KEYS[key], None) for key in _keys_of(constructor)[1]}
-    if len(constructors) == 1:  # what is missing is told key by key
-        keys |= {key: (_KEYS[key], ...) for key in _keys_of(constructors[0])[0]}
+    needed = _needed_by_all(constructors)
+    names = dict.fromkeys(key for make in constructors for key in _keys_of(make)[1])
+    keys: dict[str, Any] = {key: (_KEYS[key], ... if key in needed else None) for key in names}
     table = create_model(constructors[0].__name__, __base__=Thing, **keys)
     table.constructors = constructors
     return table
+
+
+def _needed_by_all(constructors: tuple[Callable, ...]) -> set[str]:
+    return set.intersection(*(set(_keys_of(make)[0]) for make in constructors))
 
 
 def _keys_of(constructor: Callable) -> tuple[list[str], dict[str, str]]:
     """Return the keys that a constructor needs, and of each it knows the name of its parameter."""
     parameters = signature(constructor).parameters
     key_of = {name: _KEY_OF.get(name, name) for name in parameters}
-    needed = [key_of[n] for n, parameter in parameters.items() if parameter.default is _NO_DEFAULT]
+    needed = [
+        key_of[n] for n, parameter in parameters.items() if parameter.default is Parameter.empty
+    ]
     return needed, {key: name for name, key in key_of.items()}
 
 
+_KEYS: dict[str, Any] = {
+    **dict.fromkeys(
+        ("radius", "apex_radius", "edge_radius", "height", "z0", "decay", "core", "debye_length",
+         "cutoff"),
+        Length,
+    ),
+    **dict.fromkeys(("E", "E0", "E1", "E_inf", "G", "G0", "G_inf"), Modulus),
+    **dict.fromkeys(("moduli", "shear_moduli"), Moduli),
+    **dict.fromkeys(("creep_time", "relaxation_time", "reference_time"), Time),
+    **dict.fromkeys(("relaxation_times", "retardation_times", "window"), Times),
+    **dict.fromkeys(("tension", "pressure_at_zero"), Pressure),
+    **dict.fromkeys(("surface_potential", "tip_potential"), Voltage),
+    **dict.fromkeys(
+        ("poisson", "exponent", "error", "wall", "smoothing", "permittivity", "mixing_ratio",
+         "per_decade"),
+        Number,
+    ),
+    "half_angle": Angle,
+    "compliances": Compliances,
+    "ratios": Numbers,
+    "viscosity": Viscosity,
+    "hamaker": Joules,
+    "work_of_adhesion": JoulesPerArea,
+    "temperature": Temperature,
+    "concentration": Concentration,
+    "file": File,
+}  # fmt: skip
+"""How the parameters of tips, samples and surface laws are written, by their names."""
+
+_KEY_OF = {"W": "work_of_adhesion"}
+"""Keys that are not called as the parameter is."""
+
+
+def _read_file(read: Callable[[Path], Any], path: Path) -> Any:
+    """Read a thing from a CSV file; a refusal names the file."""
+    try:
+        return read(path)
+    except ValueError as error:
+        raise ValueError(f"file = {path.name}: {error}") from error
+
+
+def _measured_tip(file: Path) -> Any:
+    return _read_file(read_tip_profile, file)
+
+
+def _tabulated(file: Path) -> Any:
+    return _read_file(read_law, file)
+
+
+def _measured_moduli(file: Path, poisson: float, per_decade: float = 2.0) -> Any:
+    return _read_file(
+        lambda path: GeneralizedMaxwell.from_dma(*read_dma(path), poisson, per_decade), file
+    )
+
+
+class SumSurface(Table):
+    """``[surface] law = "sum"``: each of its ``[[surface.parts]]`` is like a ``[surface]``."""
+
+    parts: Annotated[tuple[Any, ...], BeforeValidator(_list)]
+
+    @field_validator("parts")
+    @classmethod
+    def _build_parts(cls, parts: tuple[Any, ...], info: ValidationInfo) -> tuple[SurfaceLaw, ...]:
+        chooser, choices = CHOICES["surface"]
+        laws = []
+        for index, part in enumerate(parts):
+            law = part.get(chooser) if isinstance(part, dict) else None
+            if law not in choices or law == "sum":
+                others = [name for name in choices if name != "sum"]
+                raise ValueError(f"part {index + 1} must be a table whose law is {one_of(others)}")
+            keys = {key: value for key, value in part.items() if key != chooser}
+            try:
+                laws.append(choices[law].model_validate(keys, context=info.context).build())
+            except ValidationError as invalid:
+                valid = [*choices[law].model_fields, chooser]
+                first = invalid.errors(include_url=False)[0]
+                line = problem(f"part {index + 1}", choices[law], first, valid)
+                raise ValueError(line) from None
+            except ValueError as error:
+                raise ValueError(f"part {index + 1}: {error}") from error
+        return tuple(laws)
+
+    def build(self) -> SumOfLaws:
+        return SumOfLaws(self.parts)
+
+
 CHOICES: dict[str, tuple[str, dict[str, type[Table]]]] = {
-    "tip": ("shape", {"paraboloid": ParaboloidTip}),
+    "tip": (
+        "shape",
+        {
+            **{tip.kind: _thing(tip) for tip in (Paraboloid, Sphere, Cone, Hyperboloid, FlatPunch)},
+            PowerLawTip.kind: _thing(PowerLawTip),
+            "measured": _thing(_measured_tip),
+        },
+    ),
     "sample": (
         "model",
         {
             "standard-linear-solid": StandardLinearSolidSample,
-            "elastic": ElasticSample,
-            "generalized-kelvin-voigt": GeneralizedKelvinVoigtSample,
+            "elastic": _thing(Elastic),
+            "kelvin-voigt": _thing(KelvinVoigt, KelvinVoigt.from_viscosity, KelvinVoigt.from_shear),
+            "maxwell": _thing(Maxwell, Maxwell.from_viscosity, Maxwell.from_shear),
+            "generalized-kelvin-voigt": _thing(GeneralizedKelvinVoigt),
+            "generalized-maxwell": _thing(
+                GeneralizedMaxwell, GeneralizedMaxwell.from_shear, GeneralizedMaxwell.from_ratios
+            ),
+            "power-law": _thing(PowerLaw),
+            "fractional-standard-linear-solid": _thing(FractionalStandardLinearSolid),
+            "measured-moduli": _thing(_measured_moduli),
+            **{name: _thing(sample) for name, sample in NAMED.items()},
         },
     ),
-    "surface": ("law", {"lennard-jones": LennardJonesSurface}),
+    "surface": (
+        "law",
+        {
+            "lennard-jones": _thing(LennardJones, LennardJones.from_work_of_adhesion),
+            "van-der-waals": _thing(VanDerWaals, VanDerWaals.from_work_of_adhesion),
+            "dmt": _thing(DMT, DMT.from_work_of_adhesion),
+            **{law.kind: _thing(law) for law in (Exponential, Morse, Dugdale)},
+            "dlvo": _thing(DLVO, DLVO.from_concentration),
+            **{law.kind: _thing(law) for law in (Repulsion, VanDerWaalsAttraction)},
+            "tabulated": _thing(_tabulated),
+            "sum": SumSurface,
+        },
+    ),
     "solver": (
         "name",
         {solver.kind: _solver(solver) for solver in (Energy, Attard, EnhancedAttard)},

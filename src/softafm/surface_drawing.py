@@ -59,10 +59,12 @@ def plot_surface(
     start, end = _window(drawn)
     gap = np.linspace(start, end if largest_gap is None else largest_gap, 2001)
     wells = [law for law in drawn if law.attracts]
-    _draw(axes[0], gap, [law.pressure(gap) for law in drawn], names,
-          [law.largest_tension for law in wells], ("Pressure", "Pa"))  # fmt: skip
-    _draw(axes[1], gap, [law.potential(gap) for law in drawn], names,
-          [-float(law.potential(law.equilibrium_gap)) for law in wells], ("Potential", "J/m²"))  # fmt: skip
+    tensions = [law.largest_tension for law in wells]
+    works = [law.work_of_adhesion for law in wells]
+    pressures = [law.pressure(gap) for law in drawn]
+    potentials = [law.potential(gap) for law in drawn]
+    _draw(axes[0], gap, pressures, names, tensions, ("Pressure", "Pa"))
+    _draw(axes[1], gap, potentials, names, works, ("Potential", "J/m²"))
     if len(drawn) > 1:
         entries = axes[0].get_legend_handles_labels()
         columns = min(len(drawn), 5)

@@ -1,17 +1,15 @@
 """Measured storage and loss moduli: read, fit by a Prony series, and compare with a sample."""
 
-import csv
 from math import ceil, log10, pi
 from pathlib import Path
 
 import numpy as np
 
 from softafm._validate import finite
-from softafm.measured import _column, _text
+from softafm.measured import read_columns
 from softafm.rheology.lists import samples
 from softafm.units import FREQUENCY, MODULUS
 
-HEADER = "frequency (Hz),storage (MPa),loss (MPa)"
 NOISE = 0.05
 """How far a storage modulus may fall below an earlier one and pass for measurement noise."""
 NEGLIGIBLE = 1e-4
@@ -29,28 +27,9 @@ def read_dma(path: str | Path) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     ValueError
         If the file cannot be read, lacks a column or a unit, or holds what no passive solid does.
     """
-    try:
-        rows = list(csv.reader(_text(Path(path)).splitlines()))
-    except csv.Error as error:
-        raise ValueError(f"is not a CSV file: {error}") from None
-    header = rows[0] if rows else []
-    columns = [
-        _named(header, "frequency", FREQUENCY),
-        _named(header, "storage", MODULUS),
-        _named(header, "loss", MODULUS),
-    ]
-    values = []
-    for line, row in enumerate(rows[1:], start=2):
-        if not any(entry.strip() for entry in row):
-            continue
-        try:
-            values.append([float(row[index]) * unit for index, unit in columns])
-        except (ValueError, IndexError):
-            shown = ",".join(row)[:60]
-            raise ValueError(
-                f"line {line} ({shown!r}) must hold a frequency, a storage and a loss modulus"
-            ) from None
-    frequency, storage, loss = np.array(values, float).reshape(-1, 3).T
+    columns = {"frequency": FREQUENCY, "storage": MODULUS, "loss": MODULUS}
+    example = "frequency (Hz),storage (MPa),loss (MPa)"
+    frequency, storage, loss = read_columns(path, columns, example)
     return checked(frequency, storage, loss)
 
 
@@ -119,11 +98,3 @@ def checked(frequency, storage, loss) -> tuple[np.ndarray, np.ndarray, np.ndarra
             "(passive solids stiffen with frequency)"
         )
     return frequency, *moduli
-
-
-def _named(header: list[str], name: str, kind) -> tuple[int, float]:
-    try:
-        return _column(header, name, kind)
-    except ValueError as error:
-        wrong = str(error).partition("; its first line")[0]
-        raise ValueError(f"{wrong}; its first line must read, for example, '{HEADER}'") from None

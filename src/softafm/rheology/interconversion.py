@@ -74,7 +74,7 @@ def chain_to_prony(
 
 
 def _merged(weights, times) -> tuple[np.ndarray, np.ndarray]:
-    """Return the terms by rising time, those of equal times added and those of no weight left out."""
+    """Return the terms by rising time, equal times added and zero weights left out."""
     weights, times = np.asarray(weights, float), np.asarray(times, float)
     times, group = np.unique(times[weights > 0], return_inverse=True)
     return np.bincount(group, weights[weights > 0], times.size), times

@@ -34,7 +34,7 @@ def samples(name: str, values, unit: str, least: float | None = None) -> np.ndar
     except (TypeError, ValueError):
         raise ValueError(f"{name} = {values!r}: must be numbers in {unit}") from None
     bad = np.argwhere(~(np.isfinite(array) & ((array > 0) if least is None else (array >= least))))
-    if bad.size or bad.shape[0]:
+    if bad.shape[0]:
         where = tuple(int(i) for i in bad[0])
         entry = name + (f"[{', '.join(map(str, where))}]" if where else "")
         valid = "greater than 0" if least is None else f"at least {least:g}"

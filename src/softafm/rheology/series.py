@@ -1,5 +1,6 @@
 """The fewest Kelvin-Voigt modes that stand for a continuous spectrum over a window of times."""
 
+from collections.abc import Hashable
 from functools import lru_cache
 from math import ceil, log, log10, pi
 from typing import NamedTuple, Protocol
@@ -10,14 +11,16 @@ from softafm._validate import finite
 from softafm.rheology.compliance import ReducedCompliance
 
 MOST_MODES = 40
+_WIDEST = 1e60
 _FITTED, _MEASURED = 12, 60
 """Samples a decade where a series is fitted, and where its error is measured."""
 _MOST_STEPS, _PATIENCE = 300, 45
 """Steps to level the error, and how many of them may pass without gain."""
 _EXACT = 1e-12
+"""An error of round-off, with nothing left to level."""
 
 
-class Response(Protocol):
+class Response(Hashable, Protocol):
     """A compliance known exactly; hashable, for its series is found only once."""
 
     @property
@@ -59,7 +62,8 @@ def fewest_modes(response: Response, window: tuple[float, float], error: float) 
         If more than 40 modes were needed.
     """
     shortest, longest = window
-    series = _fewest(response, longest / shortest, error)
+    ratio = longest / shortest
+    series = _fewest(response, ratio, error) if ratio < _WIDEST else None
     if series is None:
         raise ValueError(
             f"error = {error:g} over window = ({shortest:g}, {longest:g}) s needs more than "

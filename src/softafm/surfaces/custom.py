@@ -15,6 +15,8 @@ _FAR = 1.0
 _STEP = 1e-4
 """Step of the differences that check the derivatives, in gaps."""
 _TOLERANCE = 1e-3
+_NOISE = 1e-9
+"""Part of the largest pressure or potential below which rounding may hide its derivative."""
 _STRONGEST = 1e4
 """Repulsions that exceed the largest tension, or 1 MPa, so many times are not checked."""
 
@@ -88,7 +90,8 @@ class CustomSurface(SurfaceLaw):
             ("pressure", p, self.potential, -1),
         ):
             found = sign * _derivative(of, h)
-            scale = np.abs(claimed) + np.abs(of(h)) / h
+            values = np.abs(of(h))
+            scale = np.abs(claimed) + (values + _NOISE * values.max(initial=0.0)) / h
             off = np.abs(claimed - found) > _TOLERANCE * scale
             for i in np.flatnonzero(off[1:] & off[:-1]):  # one alone may be at a kink
                 unit, rule = ("Pa/m", "dp/dh") if sign > 0 else ("Pa", "−dΦ/dh")

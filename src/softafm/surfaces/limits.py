@@ -2,8 +2,8 @@
 
 from softafm._validate import finite
 
-SHORTEST, LONGEST = 1e-11, 1e-6
-"""Lengths that surface forces may have, m: from a tenth of an atom to the wavelength of light."""
+SHORTEST, LONGEST = 2e-12, 1e-6
+"""Lengths that surface forces may have, m: from a hundredth of an atom to a wave of light."""
 
 
 def between(name: str, value: float, unit: str, least: float, most: float) -> float:
