@@ -54,6 +54,9 @@ CLOCK_SIZE = 20
 R_TIME, R_HEIGHT, R_FORCE, R_EDGE, R_AXIS, R_LOSS, R_COARSENESS, R_FRAME, R_JUMP = range(9)
 RECORD_WIDTH = 9
 
+# The smallest gap of a sound surface, in gaps at the contact edge.
+CLOSEST = 0.1
+
 # Entry of the law's parameters: where its gaps are counted from. The solver's gaps are above it.
 ORIGIN = 0
 
@@ -118,6 +121,7 @@ class Controls(NamedTuple):
     top_speed: float
     open_frame: float
     edge_gap: float
+    open_gap: float
     prediction: float
     memory: float
     force: float
@@ -640,7 +644,7 @@ def advance(
         iterations = equilibrate(
             u, v, frame * c, standoff, lever, rest, rise,
             mesh, law, parameters.law,
-            0.3 * controls.edge_gap, controls.newton, hessian, newton_work, far_work,
+            CLOSEST * controls.edge_gap, controls.newton, hessian, newton_work, far_work,
         )  # fmt: skip
         clock[NEWTONS] += abs(iterations)
 
@@ -717,10 +721,10 @@ def advance(
         clock[HISTORY] = min(history + 1, 3)
         clock[AXIS_GAP] = gap[0]
 
-        # The cohesive zone as it is now: where the gap doubles outside the edge.
+        # The cohesive zone as it is now: where the gap opens outside the edge.
         coarseness = 0.0
         if edge > 0.0:
-            zone = frame * radius_of_gap(gap, mesh.nodes, 2.0 * controls.edge_gap) - edge
+            zone = frame * radius_of_gap(gap, mesh.nodes, controls.open_gap) - edge
             coarseness = frame * mesh.edge_spacing / zone
         row = records[count]
         row[R_TIME], row[R_HEIGHT], row[R_FORCE], row[R_EDGE] = clock[TIME], h0 + u[n], force, edge

@@ -35,6 +35,7 @@ class Run:
             top_speed=motion.top_speed,
             open_frame=self.surface.open_frame,
             edge_gap=gap,
+            open_gap=self.surface.open_gap,
             prediction=0.03 * self.strictness**0.7,
             memory=min(0.01 * self.strictness, 0.05),
             force=0.01 * self.strictness,

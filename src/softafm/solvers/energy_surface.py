@@ -41,6 +41,9 @@ class Surface:
         origin = gap_origin(contact)
         law_parameters[k.ORIGIN] = origin
         self.edge_gap = contact.edge_gap - origin
+        # Where the cohesive zone ends: of a Lennard-Jones law the gap is twice that at the edge.
+        opens = 3 ** (1 / 6) * contact.reach if contact.adhesive else self.edge_gap
+        self.open_gap = self.edge_gap + opens
         self.open_frame = contact.tip.radius_at(1.125 * contact.reach)
         self.accuracy = 1e-3 * strictness
         sharpness = contact.surface.sharpness if contact.adhesive else 1.0
@@ -160,7 +163,7 @@ class Surface:
         standoff = base + clock[k.DEFLECTION]
         shape = self.fields[k.DEFORMATION]
         # A tip that starts inside the surface pushes it away.
-        pierced = standoff - shape < 0.3 * self.edge_gap
+        pierced = standoff - shape < k.CLOSEST * self.edge_gap
         shape = np.where(pierced, standoff - self.edge_gap, shape)
         unknowns = np.append(shape, clock[k.DEFLECTION])
         lever = self.parameters.lever[0] / (2 * np.pi * frame**2)
@@ -179,7 +182,7 @@ class Surface:
             pressure, gap, rise, mesh, frame, law, self.parameters.law, far_work
         )
         edge = frame * k.radius_of_gap(gap, mesh.nodes, self.edge_gap)
-        zone = frame * k.radius_of_gap(gap, mesh.nodes, 2 * self.edge_gap) - edge
+        zone = frame * k.radius_of_gap(gap, mesh.nodes, self.open_gap) - edge
         lag = self.fields[k.LOAD] - memory
         rates = modes / self.parameters.retardation
         clock[k.FRAME_EARLIER] = clock[k.FRAME_EARLIEST] = frame
@@ -219,10 +222,16 @@ def gap_origin(contact) -> float:
     Steps, errors and the mesh are judged relative to the gap. That suits a Lennard-Jones law, whose
     pressure changes as a power of the gap. Any other law is counted from where a Lennard-Jones law
     has its zero that is as stiff at its equilibrium and has the same largest tension; one that only
-    repels so that its pressure changes as it does there.
+    repels so that its pressure changes as it does there. Laws that go on below a gap of zero are
+    counted from farther in if they only there resist as much as the sample can.
     """
-    law = contact.surface
-    if not law.attracts:
-        return contact.edge_gap - 20 * contact.reach
-    gap = law.equilibrium_gap
-    return gap + 9 * sqrt(3) * law.largest_tension / float(law.slope(gap))
+    law, edge = contact.surface, contact.edge_gap
+    if law.attracts:
+        gap = law.equilibrium_gap
+        origin = gap + 9 * sqrt(3) * law.largest_tension / float(law.slope(gap))
+    else:
+        origin = edge - 20 * contact.reach
+    hardest = 1 / contact.sample.reduced_compliance.instantaneous
+    while law.overlaps and law.pressure(origin + k.CLOSEST * (edge - origin)) < hardest:
+        origin -= 0.2 * (edge - origin)
+    return max(origin, law.closest_gap)
