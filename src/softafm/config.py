@@ -7,12 +7,10 @@ from importlib import resources
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from pydantic import ValidationError
-
 from softafm import schema
 from softafm.contact import Contact
 from softafm.modes.start import refuse_start_inside, refuse_unable
-from softafm.refusals import ConfigError, as_written, nearest, one_of, problem, shown, unknown
+from softafm.refusals import ConfigError, as_written, nearest, one_of, shown, unknown
 
 if TYPE_CHECKING:
     from xarray import Dataset
@@ -248,40 +246,28 @@ def _refuse_motion(contact: Contact, motion: Any, solver: Any, written: dict) ->
 
 
 def _build(name: str, document: Mapping[str, Any], mode: Any, folder: Path) -> Any:
-    """Return the object that a table describes."""
+    """Return the object that a table describes, having made sure that solvers can use it."""
     if name not in document:
         raise ConfigError([f"{name}: missing; add a table [{name}]"])
     written = document[name]
     if not isinstance(written, dict):
         raise ConfigError([f"{name} = {shown(written)}: must be a table, [{name}]"])
     if name == "run":
-        table = _validated(name, schema.Run, written, None, folder)
-    elif name == "cantilever":
-        table = _validated(name, schema.CANTILEVERS[mode], written, None, folder)
-    else:
-        chooser, choices = schema.CHOICES.get(name) or ("shape", schema.MOTIONS[mode])
-        names = list(choices)
-        choice = written.get(chooser, names[0] if name == "motion" else None)
-        if choice is None:
-            raise ConfigError([f"{name}.{chooser}: missing; must be {one_of(names)}"])
-        if not isinstance(choice, str) or choice not in choices:
-            raise ConfigError([f"{name}.{chooser} = {shown(choice)}: {nearest(choice, names)}"])
-        table = _validated(name, choices[choice], written, chooser, folder)
+        return schema.built(name, written, schema.Run, folder=folder)
+    if name == "cantilever":
+        return schema.built(name, written, schema.CANTILEVERS[mode], folder=folder)
+    if name == "motion":
+        shapes = schema.MOTIONS[mode]
+        default = next(iter(shapes))
+        return schema.chosen(name, written, "shape", shapes, default=default, folder=folder)
+    thing = schema.chosen(name, written, *schema.CHOICES[name], folder=folder)
     try:
-        return table.build()
-    except (ValueError, ArithmeticError) as error:
-        line = as_written(name, written, error) or f"{name}: {error}"
-        raise ConfigError([line]) from error
-
-
-def _validated(
-    name: str, model: type[schema.Table], written: Mapping, chooser: str | None, folder: Path
-) -> Any:
-    keys = {key: value for key, value in written.items() if key != chooser}
-    try:
-        return model.model_validate(keys, context={"folder": folder})
-    except ValidationError as invalid:
-        valid = [*model.model_fields, *([chooser] if chooser else [])]
-        raise ConfigError(
-            [problem(name, model, error, valid) for error in invalid.errors(include_url=False)]
-        ) from None
+        if name == "sample":
+            thing.reduced_compliance  # noqa: B018: found now, for it may need too many modes
+        elif name == "surface" and thing.attracts:
+            thing.equilibrium_gap  # noqa: B018: found now, for it may not exist
+    except ValueError as error:
+        key = "window" if name == "sample" else "law"
+        reason = str(error).removeprefix(f"surface law '{thing.kind}': ")
+        raise ConfigError([f"{name}.{key} = {shown(written.get(key))}: {reason}"]) from error
+    return thing

@@ -92,6 +92,23 @@ class Contact:
         """
         return self.tip.radius_at(self.reach) ** 2 / (2 * self.reach)
 
+    @cached_property
+    def open_radius(self) -> float:
+        """Radius over which tip and sample feel each other before they touch, m."""
+        return self.tip.radius_at(1.125 * self.reach)
+
+    @cached_property
+    def open_width(self) -> float:
+        """Width of the zone there in which the gap opens, m."""
+        return self.tip.radius_at(2 * self.reach) - self.tip.radius_at(self.reach)
+
+    @cached_property
+    def force_scale(self) -> float:
+        """A force to be felt, N: a part of the pull-off, or of Hertz's at a depth of one reach."""
+        if self.adhesive:
+            return 0.2 * pi * self.effective_radius * self.surface.work_of_adhesion
+        return 1e-2 * self.softened_modulus * self.open_radius * self.reach
+
     def _tabor(self, modulus: float) -> float:
         if not self.adhesive:
             return 0.0

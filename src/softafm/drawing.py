@@ -1,7 +1,8 @@
 """The house style of figures: colours, strokes, and axes in the prefixes that suit the data."""
 
+from collections.abc import Iterable, Sequence
 from math import floor, log10
-from typing import Final
+from typing import Any, Final
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -14,7 +15,39 @@ from softafm.units import readable
 COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000")
 APPROACH: Final = "-"
 RETRACT: Final = (0, (4, 1.5))
+HOLLOW: dict[str, Any] = {
+    "linestyle": "none",
+    "marker": "o",
+    "markersize": 4.5,
+    "markerfacecolor": "white",
+}
+"""Style of points that lie on, or beside, a line."""
 PREFIXES = EngFormatter.ENG_PREFIXES
+_STYLES: Final = (APPROACH, RETRACT)
+
+
+def labels_of(
+    noun: str, things: Sequence, labels: Sequence[str] | None, usual: Iterable[str]
+) -> list[str]:
+    """Return a label for each thing to draw, the usual ones by default.
+
+    Raises
+    ------
+    ValueError
+        If there is nothing to draw or the number of labels is not that of the things.
+    """
+    if not things:
+        raise ValueError(f"{noun}s is empty: must hold at least one {noun}")
+    names = list(usual if labels is None else labels)
+    if len(names) != len(things):
+        raise ValueError(f"labels has {len(names)} entries: must have one a {noun}, {len(things)}")
+    return names
+
+
+def line_of(index: int) -> dict[str, Any]:
+    """Style of one of several lines: a colour each, and dashes when all were used."""
+    style = _STYLES[index // len(COLOURS) % len(_STYLES)]
+    return {"color": COLOURS[index % len(COLOURS)], "linestyle": style, "linewidth": 1.5}
 
 
 def colours(index: int, count: int) -> tuple[str, str]:
@@ -50,9 +83,14 @@ def factor_of(*arrays: np.ndarray) -> float:
     return 10.0 ** -min(max(exponent, min(PREFIXES)), max(PREFIXES))
 
 
+def prefix_of(factor: float) -> str:
+    """Prefix of the unit of values that were multiplied by ``factor``."""
+    return PREFIXES[-round(log10(factor))]
+
+
 def label_of(title: str, unit: str, factor: float) -> str:
     """Label of an axis whose values were multiplied by ``factor``."""
-    return f"{title} ({PREFIXES[-round(log10(factor))]}{unit})"
+    return f"{title} ({prefix_of(factor)}{unit})"
 
 
 def tidy(ax: Axes) -> None:

@@ -1,7 +1,6 @@
 """Static figures of results, one kind for each mode, drawn without pyplot or any global state."""
 
 from collections.abc import Iterator, Sequence
-from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -12,10 +11,12 @@ from matplotlib.lines import Line2D
 from softafm.drawing import (
     APPROACH,
     COLOURS,
+    HOLLOW,
     RETRACT,
     colours,
     factor_of,
     label_of,
+    labels_of,
     quantity,
     run_entries,
     stroke_entries,
@@ -31,12 +32,6 @@ AXES = {
     "base_height": ("Base height", "m"),
     "deflection": ("Deflection", "m"),
     "force": ("Force on the tip", "N"),
-}
-JUMP: dict[str, Any] = {
-    "linestyle": "none",
-    "marker": "o",
-    "markersize": 4.5,
-    "markerfacecolor": "white",
 }
 
 
@@ -67,11 +62,7 @@ def plot(
         labels is not that of datasets.
     """
     runs = [datasets] if isinstance(datasets, xr.Dataset) else list(datasets)
-    if not runs:
-        raise ValueError("datasets is empty: must hold at least one result")
-    names = [f"run {i}" for i in range(1, len(runs) + 1)] if labels is None else list(labels)
-    if len(names) != len(runs):
-        raise ValueError(f"labels has {len(names)} entries: must have one a dataset, {len(runs)}")
+    names = labels_of("dataset", runs, labels, (f"run {i + 1}" for i in range(len(runs))))
     modes = sorted({str(run.attrs.get("mode")) for run in runs})
     figures = {
         "force-distance": _force_distance,
@@ -156,7 +147,7 @@ def _draw(ax: Axes, runs: list[xr.Dataset], abscissa: str, ordinate: str = "forc
             np.interp(jumps, run["time"].values, y),
             color=approach_colour if len(runs) > 1 else "black",
             zorder=3,
-            **JUMP,
+            **HOLLOW,
         )
     ax.set_xlabel(label_of(*AXES[abscissa], x_scale), fontsize=11)
     ax.set_ylabel(label_of(*AXES[ordinate], y_scale), fontsize=11)
@@ -172,7 +163,7 @@ def _stroke_entries(runs: list[xr.Dataset]) -> list[Line2D]:
     """Legend entries of strokes by line style, and of elastic jumps if there are any."""
     entries = stroke_entries(len(runs))
     if any(run["jump_time"].size for run in runs):
-        entries.append(Line2D([], [], color="black", label="elastic jump", **JUMP))
+        entries.append(Line2D([], [], color="black", label="elastic jump", **HOLLOW))
     return entries
 
 

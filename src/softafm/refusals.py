@@ -9,10 +9,11 @@ from pydantic import BaseModel
 
 _LONGEST_SHOWN = 60
 _OTHER_NAMES = {
-    "W": "work_of_adhesion",
-    "E0": "G0",
-    "E_inf": "G_inf",
-    "creep_time": "relaxation_time",
+    "W": ("work_of_adhesion",),
+    "E0": ("G0",),
+    "E_inf": ("G_inf",),
+    "creep_time": ("relaxation_time",),
+    "moduli": ("shear_moduli", "ratios"),
 }
 """What a constructor calls a value that the user may have written under another key."""
 
@@ -24,8 +25,15 @@ class ConfigError(ValueError):
         super().__init__("\n".join(_one_line(problem) for problem in problems))
 
 
-def problem(name: str, model: type[BaseModel], error: Any, valid: list[str]) -> str:
-    """Put one of pydantic's errors into a sentence."""
+def problems(name: str, model: type[BaseModel], error: Any, valid: list[str]) -> list[str]:
+    """Put one of pydantic's errors into sentences: one, or those of a table within the table."""
+    inner = error.get("ctx", {}).get("error")
+    if isinstance(inner, ConfigError):
+        return [f"{name}.{line}" for line in str(inner).splitlines()]
+    return [_problem(name, model, error, valid)]
+
+
+def _problem(name: str, model: type[BaseModel], error: Any, valid: list[str]) -> str:
     key = error["loc"][0]
     path = f"{name}.{key}" + "".join(f"[{index}]" for index in error["loc"][1:])
     if error["type"] == "extra_forbidden":
@@ -46,8 +54,7 @@ def as_written(table: str, written: Mapping[str, Any], error: Exception) -> str 
     if match is None:
         return None
     name, index, reason = match.groups()
-    if name not in written:
-        name = _OTHER_NAMES.get(name, name)
+    name = _key(name, written)
     if name not in written:
         return None
     value = written[name]
@@ -55,11 +62,17 @@ def as_written(table: str, written: Mapping[str, Any], error: Exception) -> str 
         name, value = f"{name}[{index}]", value[int(index)]
 
     def other(mention: re.Match) -> str:
-        key = mention[1] if mention[1] in written else _OTHER_NAMES.get(mention[1], "")
+        key = _key(mention[1], written)
         return f"{table}.{key} = {shown(written[key])}" if key in written else mention[0]
 
-    reason = re.sub(r"(\w+) = [-+.\de]+ [^\s,;)]+", other, reason)
+    reason = re.sub(r"(?<![\w/])(\w+) = [-+.\de]+ [^\s,;)]+", other, reason)
+    reason = re.sub(r"(?<=as many as )\w+", lambda mention: _key(mention[0], written), reason)
     return f"{table}.{name} = {shown(value)}: {reason}"
+
+
+def _key(name: str, written: Mapping[str, Any]) -> str:
+    """Return the key under which the user wrote what a constructor calls ``name``."""
+    return next((key for key in (name, *_OTHER_NAMES.get(name, ())) if key in written), name)
 
 
 def unknown(key: str, valid: Sequence[str], path: str) -> str:

@@ -1,36 +1,29 @@
 """The figure of a sample: creep and relaxation over time, storage and loss over frequency."""
 
-from math import log10, pi
-from typing import Any
+from math import pi
+from typing import TYPE_CHECKING
 
 import numpy as np
-from matplotlib.axes import Axes
-from matplotlib.figure import Figure
-from matplotlib.layout_engine import ConstrainedLayoutEngine
-from matplotlib.ticker import EngFormatter, LogLocator
 
-from softafm.drawing import COLOURS, PREFIXES, RETRACT, factor_of
 from softafm.rheology.dma import checked
 from softafm.rheology.interconversion import chain_to_prony
 from softafm.rheology.lists import window_of
 from softafm.rheology.represented import Represented
 from softafm.rheology.solid import Solid
 
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
 _SAMPLES = 300
 _DEEPEST = 1e8
-_POINTS: dict[str, Any] = {
-    "linestyle": "none",
-    "marker": "o",
-    "markersize": 4.5,
-    "markerfacecolor": "white",
-}
 
 
 def plot_rheology(
     sample: Solid,
     window: tuple[float, float] | None = None,
     data: tuple | None = None,
-) -> Figure:
+) -> "Figure":
     """Draw a sample's creep compliance, relaxation modulus, storage and loss modulus.
 
     Parameters
@@ -53,43 +46,21 @@ def plot_rheology(
     ValueError
         If the window or the data are not such.
     """
-    measured = None if data is None else checked(*data)
-    shortest, longest = _window(sample, measured) if window is None else window_of(window)
-    time = np.geomspace(shortest, longest, _SAMPLES)
-    frequency = 1 / (2 * pi * time[::-1])
+    from matplotlib.figure import Figure
+    from matplotlib.layout_engine import ConstrainedLayoutEngine
 
+    measured = None if data is None else checked(*data)
+    shortest, longest = times_of(sample, measured) if window is None else window_of(window)
+    time = np.geomspace(shortest, longest, _SAMPLES)
     figure = Figure(figsize=(10.4, 4.2), dpi=150, layout=ConstrainedLayoutEngine(wspace=0.06))
     against_time, against_frequency = figure.subplots(1, 2)
-    against_compliance = against_time.twinx()
-    relaxation, creep = sample.relaxation_modulus(time), sample.creep_compliance(time)
-    prefix, factor = _prefix(relaxation)
-    against_time.plot(time, factor * relaxation, color=COLOURS[0])
-    against_time.set_ylabel(f"Relaxation modulus ({prefix}Pa)", fontsize=11, color=COLOURS[0])
-    prefix, factor = _prefix(1 / creep)
-    against_compliance.plot(time, creep / factor, color=COLOURS[1], linestyle=RETRACT)
-    against_compliance.set_ylabel(f"Creep compliance (1/{prefix}Pa)", fontsize=11, color=COLOURS[1])
-    _logarithmic(against_time, "Time", "s", right=False)
-    _logarithmic(against_compliance, "Time", "s", right=True)
-
-    moduli = sample.storage_modulus(frequency), sample.loss_modulus(frequency)
-    prefix, factor = _prefix(*moduli, *(measured[1:] if measured else ()))
-    for index, name in enumerate(("storage modulus E′", "loss modulus E″")):
-        colour, line = COLOURS[index], ("-", RETRACT)[index]
-        against_frequency.plot(
-            frequency, factor * moduli[index], color=colour, linestyle=line, label=name
-        )
-        if measured:
-            points = factor * measured[1 + index]
-            label = f"{name.split()[0]}, measured"
-            against_frequency.plot(measured[0], points, color=colour, label=label, **_POINTS)
-    against_frequency.set_ylabel(f"Modulus ({prefix}Pa)", fontsize=11)
-    _logarithmic(against_frequency, "Frequency", "Hz")
-    against_frequency.legend(frameon=False)
+    draw_steps(against_time, sample, time)
+    draw_moduli(against_frequency, sample, time, measured)
     return figure
 
 
-def _window(sample: Solid, measured) -> tuple[float, float]:
-    """Return the times of the data, or of the sample."""
+def times_of(sample: Solid, measured: tuple | None = None) -> tuple[float, float]:
+    """Return shortest and longest time, s, of the data, or else of the sample."""
     if measured:
         return 1 / (2 * pi * measured[0][-1]), 1 / (2 * pi * measured[0][0])
     if isinstance(sample, Represented):
@@ -102,14 +73,54 @@ def _window(sample: Solid, measured) -> tuple[float, float]:
     return float(times.min()) / 100, float(times.max()) * 100
 
 
-def _prefix(*moduli: np.ndarray) -> tuple[str, float]:
-    """Return the prefix that suits the largest modulus, and the factor from SI to it."""
-    factor = factor_of(*moduli)
-    return PREFIXES[-round(log10(factor))], factor
+def draw_steps(ax: "Axes", sample: Solid, time: np.ndarray) -> None:
+    """Draw relaxation modulus and creep compliance at ``time`` (s), rising, with an axis each."""
+    from softafm.drawing import factor_of, label_of, prefix_of
+
+    against_compliance = ax.twinx()
+    relaxation, creep = sample.relaxation_modulus(time), sample.creep_compliance(time)
+    factor = factor_of(relaxation)
+    solid, dashed = _lines()
+    ax.plot(time, factor * relaxation, **solid)
+    ax.set_ylabel(label_of("Relaxation modulus", "Pa", factor), fontsize=11, color=solid["color"])
+    factor = factor_of(1 / creep)
+    against_compliance.plot(time, creep / factor, **dashed)
+    title = f"Creep compliance (1/{prefix_of(factor)}Pa)"
+    against_compliance.set_ylabel(title, fontsize=11, color=dashed["color"])
+    _logarithmic(ax, "Time", "s", right=False)
+    _logarithmic(against_compliance, "Time", "s", right=True)
 
 
-def _logarithmic(ax: Axes, title: str, unit: str, right: bool | None = None) -> None:
+def draw_moduli(ax: "Axes", sample: Solid, time: np.ndarray, measured: tuple | None = None) -> None:
+    """Draw storage and loss modulus at ω = 1/``time`` (s, rising), and measured ones as points."""
+    from softafm.drawing import HOLLOW, factor_of, label_of
+
+    frequency = 1 / (2 * pi * time[::-1])
+    moduli = sample.storage_modulus(frequency), sample.loss_modulus(frequency)
+    factor = factor_of(*moduli, *(measured[1:] if measured else ()))
+    for index, name in enumerate(("storage modulus E′", "loss modulus E″")):
+        line = _lines()[index]
+        ax.plot(frequency, factor * moduli[index], label=name, **line)
+        if measured:
+            label = f"{name.split()[0]}, measured"
+            points = factor * measured[1 + index]
+            ax.plot(measured[0], points, color=line["color"], label=label, **HOLLOW)
+    ax.set_ylabel(label_of("Modulus", "Pa", factor), fontsize=11)
+    _logarithmic(ax, "Frequency", "Hz")
+    ax.legend(frameon=False)
+
+
+def _lines():
+    """Styles of what is stored and what is lost: by colour and by dashes."""
+    from softafm.drawing import RETRACT, line_of
+
+    return line_of(0), {**line_of(1), "linestyle": RETRACT}
+
+
+def _logarithmic(ax: "Axes", title: str, unit: str, right: bool | None = None) -> None:
     """Set logarithmic axes, the abscissa labelled in prefixes; ``right`` if two share it."""
+    from matplotlib.ticker import EngFormatter, LogLocator
+
     ax.set_xscale("log")
     ax.set_yscale("log")
     ax.set_xlabel(f"{title} ({unit})", fontsize=11)

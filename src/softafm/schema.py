@@ -27,7 +27,7 @@ from softafm._validate import finite, positive, tolerance_of, whole
 from softafm.cantilever import Cantilever
 from softafm.measured import read_trajectory
 from softafm.motions import Sine, Trajectory, Triangle
-from softafm.refusals import all_of, one_of, problem
+from softafm.refusals import ConfigError, all_of, as_written, nearest, one_of, problems, shown
 from softafm.rheology import (
     Elastic,
     FractionalStandardLinearSolid,
@@ -489,37 +489,28 @@ def _tabulated(file: Path) -> Any:
 
 
 def _measured_moduli(file: Path, poisson: float, per_decade: float = 2.0) -> Any:
-    return _read_file(
-        lambda path: GeneralizedMaxwell.from_dma(*read_dma(path), poisson, per_decade), file
-    )
+    return GeneralizedMaxwell.from_dma(*_read_file(read_dma, file), poisson, per_decade)
 
 
 class SumSurface(Table):
     """``[surface] law = "sum"``: each of its ``[[surface.parts]]`` is like a ``[surface]``."""
 
-    parts: Annotated[tuple[Any, ...], BeforeValidator(_list)]
+    parts: Annotated[
+        tuple[Any, ...],
+        BeforeValidator(_list),
+        Field(description="tables [[surface.parts]], each with a law and its keys"),
+    ]
 
     @field_validator("parts")
     @classmethod
     def _build_parts(cls, parts: tuple[Any, ...], info: ValidationInfo) -> tuple[SurfaceLaw, ...]:
-        chooser, choices = CHOICES["surface"]
-        laws = []
-        for index, part in enumerate(parts):
-            law = part.get(chooser) if isinstance(part, dict) else None
-            if law not in choices or law == "sum":
-                others = [name for name in choices if name != "sum"]
-                raise ValueError(f"part {index + 1} must be a table whose law is {one_of(others)}")
-            keys = {key: value for key, value in part.items() if key != chooser}
-            try:
-                laws.append(choices[law].model_validate(keys, context=info.context).build())
-            except ValidationError as invalid:
-                valid = [*choices[law].model_fields, chooser]
-                first = invalid.errors(include_url=False)[0]
-                line = problem(f"part {index + 1}", choices[law], first, valid)
-                raise ValueError(line) from None
-            except ValueError as error:
-                raise ValueError(f"part {index + 1}: {error}") from error
-        return tuple(laws)
+        chooser, laws = CHOICES["surface"]
+        single = {law: table for law, table in laws.items() if table is not cls}
+        folder = info.context["folder"] if info.context else Path()
+        return tuple(
+            chosen(f"parts[{index}]", part, chooser, single, folder=folder)
+            for index, part in enumerate(parts)
+        )
 
     def build(self) -> SumOfLaws:
         return SumOfLaws(self.parts)
@@ -590,3 +581,42 @@ CANTILEVERS: dict[str, type[Table]] = {
     "approach-curve": ResonatorTable,
 }
 """For each mode that needs a cantilever its table; the others have no use for one."""
+
+
+def chosen(
+    name: str,
+    written: Any,
+    chooser: str,
+    choices: Mapping[str, type[Table]],
+    *,
+    default: str | None = None,
+    folder: Path,
+) -> Any:
+    """Build what a table describes whose key ``chooser`` says of which choice it is.
+
+    ``name`` is what the table is called in a ConfigError; files are sought in ``folder``.
+    """
+    if not isinstance(written, dict):
+        raise ConfigError([f"{name} = {shown(written)}: must be a table with a {chooser}"])
+    choice = written.get(chooser, default)
+    if choice is None:
+        raise ConfigError([f"{name}.{chooser}: missing; must be {one_of(list(choices))}"])
+    if not isinstance(choice, str) or choice not in choices:
+        reason = nearest(choice, list(choices))
+        raise ConfigError([f"{name}.{chooser} = {shown(choice)}: {reason}"])
+    return built(name, written, choices[choice], chooser=chooser, folder=folder)
+
+
+def built(
+    name: str, written: Mapping, table: type[Table], *, chooser: str | None = None, folder: Path
+) -> Any:
+    """Build what a table of a known kind describes; ConfigError if it cannot be."""
+    keys = {key: value for key, value in written.items() if key != chooser}
+    try:
+        return table.model_validate(keys, context={"folder": folder}).build()
+    except ValidationError as invalid:
+        valid = [*table.model_fields, *([chooser] if chooser else [])]
+        lines = [problems(name, table, e, valid) for e in invalid.errors(include_url=False)]
+        raise ConfigError([line for several in lines for line in several]) from None
+    except (ValueError, ArithmeticError) as error:
+        raise ConfigError([as_written(name, written, error) or f"{name}: {error}"]) from error

@@ -1,16 +1,16 @@
 """Figures of surface laws: pressure and potential against the gap."""
 
 from collections.abc import Sequence
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from matplotlib.axes import Axes
-from matplotlib.figure import Figure
 
-from softafm.drawing import COLOURS, factor_of, label_of, quantity, tidy
 from softafm.surfaces import SurfaceLaw
 
-_STYLES: tuple[Any, ...] = ("-", (0, (5, 1.5)))
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
 _MARK: dict[str, Any] = {"linestyle": "none", "marker": "o", "color": "black", "zorder": 4}
 _EXTENT = 3.0
 """How far beyond the largest tension a law is drawn, in ranges."""
@@ -23,7 +23,7 @@ def plot_surface(
     labels: Sequence[str] | None = None,
     *,
     largest_gap: float | None = None,
-) -> Figure:
+) -> "Figure":
     """Draw pressure and potential of a surface law against the gap, or of several over each other.
 
     A law that stands alone is marked where its pressure vanishes and where its tension is largest,
@@ -48,33 +48,45 @@ def plot_surface(
     ValueError
         If there is nothing to draw or the number of labels is not that of the laws.
     """
+    from matplotlib.figure import Figure
+
+    from softafm.drawing import labels_of
+
     drawn = [laws] if isinstance(laws, SurfaceLaw) else list(laws)
-    if not drawn:
-        raise ValueError("laws is empty: must hold at least one surface law")
-    names = [law.kind for law in drawn] if labels is None else list(labels)
-    if len(names) != len(drawn):
-        raise ValueError(f"labels has {len(names)} entries: must have one a law, {len(drawn)}")
+    names = labels_of("law", drawn, labels, (law.kind for law in drawn))
     figure = Figure(figsize=(9.6, 4.2), dpi=150, layout="constrained")
     axes = figure.subplots(1, 2, sharex=True)
-    start, end = _window(drawn)
-    gap = np.linspace(start, end if largest_gap is None else largest_gap, 2001)
-    wells = [law for law in drawn if law.attracts]
-    tensions = [law.largest_tension for law in wells]
-    works = [law.work_of_adhesion for law in wells]
-    pressures = [law.pressure(gap) for law in drawn]
-    potentials = [law.potential(gap) for law in drawn]
-    _draw(axes[0], gap, pressures, names, tensions, ("Pressure", "Pa"))
-    _draw(axes[1], gap, potentials, names, works, ("Potential", "J/m²"))
+    draw_laws(axes[0], axes[1], drawn, names, largest_gap)
     if len(drawn) > 1:
         entries = axes[0].get_legend_handles_labels()
         columns = min(len(drawn), 5)
         figure.legend(*entries, loc="outside lower center", ncols=columns, frameon=False)
-    elif wells:
-        _mark(axes[0], axes[1], drawn[0], factor_of(gap))
     return figure
 
 
-def _window(laws: list[SurfaceLaw]) -> tuple[float, float]:
+def draw_laws(
+    pressure: "Axes",
+    potential: "Axes",
+    laws: Sequence[SurfaceLaw],
+    names: Sequence[str],
+    largest_gap: float | None = None,
+) -> None:
+    """Draw pressures and potentials on their axes; mark the well of a law that stands alone."""
+    from softafm.drawing import factor_of
+
+    start, end = _window(laws)
+    gap = np.linspace(start, end if largest_gap is None else largest_gap, 2001)
+    wells = [law for law in laws if law.attracts]
+    tensions = [law.largest_tension for law in wells]
+    works = [law.work_of_adhesion for law in wells]
+    _draw(pressure, gap, [law.pressure(gap) for law in laws], names, tensions, ("Pressure", "Pa"))
+    potentials = [law.potential(gap) for law in laws]
+    _draw(potential, gap, potentials, names, works, ("Potential", "J/m²"))
+    if len(laws) == 1 and wells:
+        _mark(pressure, potential, laws[0], factor_of(gap))
+
+
+def _window(laws: Sequence[SurfaceLaw]) -> tuple[float, float]:
     """Return the gaps between which the laws differ from hard contact and from nothing."""
     wells = [law for law in laws if law.attracts]
     if wells:
@@ -95,22 +107,17 @@ def _width(law: SurfaceLaw) -> float:
     return law.range if law.work_of_adhesion > 0 else law.gap_of_largest_tension
 
 
-def _draw(ax: Axes, gap, curves, names, depths, title: tuple[str, str]) -> None:
+def _draw(ax: "Axes", gap, curves, names, depths, title: tuple[str, str]) -> None:
     """Draw curves against the gap, down to the deepest well and up as far again."""
+    from softafm.drawing import factor_of, label_of, line_of, tidy
+
     highest = max(float(curve.max()) for curve in curves)
     depth = max(depths, default=0.0)
     y_scale = factor_of(np.array([depth or highest]))
     x_scale = factor_of(gap)
     ax.axhline(0, color="0.75", linewidth=0.8, zorder=0)
     for index, (curve, name) in enumerate(zip(curves, names, strict=True)):
-        ax.plot(
-            x_scale * gap,
-            y_scale * curve,
-            color=COLOURS[index % len(COLOURS)],
-            linestyle=_STYLES[index // len(COLOURS) % len(_STYLES)],
-            linewidth=1.5,
-            label=name,
-        )
+        ax.plot(x_scale * gap, y_scale * curve, label=name, **line_of(index))
     if depth > 0:
         ax.set_ylim(-1.25 * y_scale * depth, 0.75 * y_scale * depth)
     ax.set_xlim(x_scale * gap[0], x_scale * gap[-1])
@@ -119,8 +126,10 @@ def _draw(ax: Axes, gap, curves, names, depths, title: tuple[str, str]) -> None:
     tidy(ax)
 
 
-def _mark(pressure: Axes, potential: Axes, law: SurfaceLaw, x_scale: float) -> None:
+def _mark(pressure: "Axes", potential: "Axes", law: SurfaceLaw, x_scale: float) -> None:
     """Mark and name equilibrium gap, largest tension and work of adhesion."""
+    from softafm.drawing import factor_of, quantity
+
     tension, work = law.largest_tension, law.work_of_adhesion
     rest, steepest = law.equilibrium_gap, law.gap_of_largest_tension
     for ax, gap, value, text in (

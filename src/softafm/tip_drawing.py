@@ -15,10 +15,15 @@ if TYPE_CHECKING:
 _POINTS = 600
 _APEX = 1e-4
 """Radius, in extents, at which the curvature of the apex is judged."""
+_RADII = np.geomspace(1e-10, 1e-3, 1401)
+_STEEP, _BEYOND = 0.9, 1.25
+"""Slope to which a tip is drawn, in slopes of its far flank or of 45°, and how far beyond."""
 
 
 def plot_tip(
-    tips: Tip | Sequence[Tip], extent: float, labels: Sequence[str] | None = None
+    tips: Tip | Sequence[Tip],
+    extent: float | None = None,
+    labels: Sequence[str] | None = None,
 ) -> "Figure":
     """Draw the profile of a tip, or of several, and dashed the paraboloid that fits each apex.
 
@@ -27,7 +32,7 @@ def plot_tip(
     tips
         A tip, or a sequence of tips drawn over each other.
     extent
-        Radius to draw to, m.
+        Radius to draw to, m; by default somewhat beyond the apex and all joints of the profiles.
     labels
         A name for each tip, shown in the legend; its ``kind`` by default.
 
@@ -43,13 +48,11 @@ def plot_tip(
     """
     from matplotlib.figure import Figure
 
+    from softafm.drawing import labels_of
+
     drawn = [tips] if isinstance(tips, Tip) else list(tips)
-    if not drawn:
-        raise ValueError("tips is empty: must hold at least one tip")
-    names = [tip.kind for tip in drawn] if labels is None else list(labels)
-    if len(names) != len(drawn):
-        raise ValueError(f"labels has {len(names)} entries: must have one a tip, {len(drawn)}")
-    extent = positive("extent", extent, "m")
+    names = labels_of("tip", drawn, labels, (tip.kind for tip in drawn))
+    extent = extent_of(drawn) if extent is None else positive("extent", extent, "m")
     figure = Figure(figsize=(6.4, 4.4), dpi=150, layout="constrained")
     draw_profiles(figure.add_subplot(), drawn, extent, names)
     return figure
@@ -57,7 +60,7 @@ def plot_tip(
 
 def draw_profiles(ax: "Axes", tips: Sequence[Tip], extent: float, names: Sequence[str]) -> None:
     """Draw profiles out to a radius (m) and the paraboloids of their apices on ``ax``."""
-    from softafm.drawing import COLOURS, factor_of, label_of, tidy
+    from softafm.drawing import factor_of, label_of, line_of, tidy
 
     r = np.linspace(-extent, extent, 2 * _POINTS + 1)
     scale = factor_of(r)
@@ -66,8 +69,7 @@ def draw_profiles(ax: "Axes", tips: Sequence[Tip], extent: float, names: Sequenc
     for index, (tip, name) in enumerate(zip(tips, names, strict=True)):
         height = tip.profile(np.abs(r))
         top = max(top, min(float(height[-1]), 1.2 * extent))
-        colour = COLOURS[index % len(COLOURS)]
-        ax.plot(scale * r, scale * height, color=colour, linewidth=1.5, label=name)
+        ax.plot(scale * r, scale * height, label=name, **line_of(index))
         radius = apex_radius(tip, extent)
         if radius is not None and float(f"{radius:.3g}") not in fitted:
             fitted.add(float(f"{radius:.3g}"))
@@ -81,6 +83,16 @@ def draw_profiles(ax: "Axes", tips: Sequence[Tip], extent: float, names: Sequenc
     ax.set_ylabel(label_of("Height above the apex", "m", scale), fontsize=11)
     tidy(ax)
     ax.legend(frameon=False, fontsize=9)
+
+
+def extent_of(tips: Sequence[Tip]) -> float:
+    """Radius, m, within which the apex of every tip lies, and all its joints."""
+    extents = []
+    for tip in tips:
+        slope = tip.slope(_RADII)
+        steep = np.argmax(slope >= _STEEP * min(1.0, slope[-1]))
+        extents.append(_BEYOND * max([float(_RADII[steep]), *tip.joints]))
+    return max(extents)
 
 
 def apex_radius(tip: Tip, extent: float) -> float | None:

@@ -62,9 +62,15 @@ def _si_factor(unit: str, kind: Kind) -> Decimal:
     """Return how many SI units of ``kind`` one ``unit`` is; ValueError if it is of another kind."""
     registry = _registry()
     try:
-        factor, root = registry.get_root_units(registry.parse_units(unit))
+        parsed = registry.parse_units(unit)
+        factor, root = registry.get_root_units(parsed)
+        shifted = not registry.Quantity(1, parsed)._is_multiplicative
     except Exception:  # pint raises some ten unrelated types for text it cannot read
         raise ValueError(f"must be {kind.valid}; '{unit}' is not a known unit") from None
+    if shifted:
+        raise ValueError(
+            f"must be {kind.valid}; '{unit}' does not count from zero, '{kind.si}' does"
+        )
     si_factor, si_root = registry.get_root_units(registry.parse_units(kind.si))
     # Roots, not dimensions: pint calls rad/s a frequency, and would lose a factor 2π in silence.
     if root != si_root:

@@ -141,7 +141,9 @@ def deepest_tap(contact: Contact, drive: Drive, frequency: float, amplitudes) ->
     amplitudes = np.asarray(amplitudes, float)
     mean_force = drive.strongest_push(amplitudes) / 2
     compliance = contact.sample.reduced_compliance.relaxed
-    depth = np.sqrt(4 * compliance * mean_force / np.sqrt(2 * contact.effective_radius / amplitudes))
+    depth = np.sqrt(
+        4 * compliance * mean_force / np.sqrt(2 * contact.effective_radius / amplitudes)
+    )
     deepest = depth.argmax()
     amplitude = float(amplitudes[deepest])
     return Sine(amplitude - float(depth[deepest]), amplitude, frequency, "steady")

@@ -383,9 +383,7 @@ def settle(u, v, ac, standoff, lever, rise, mesh, law, potential, parameters, ac
     return -1
 
 
-@njit(
-    float64(_V, _V, _V, MESH, float64, pointer(PRESSURE), _V, _M), cache=True, fastmath=_FAST
-)
+@njit(float64(_V, _V, _V, MESH, float64, pointer(PRESSURE), _V, _M), cache=True, fastmath=_FAST)
 def tip_force(pressure, gap, rise, mesh, frame, law, parameters, far_work):
     """Force on the tip, N: the mesh's share and that of the flat surface beyond it."""
     n = gap.size
@@ -725,7 +723,7 @@ def advance(
         coarseness = 0.0
         if edge > 0.0:
             zone = frame * radius_of_gap(gap, mesh.nodes, controls.open_gap) - edge
-            coarseness = frame * mesh.edge_spacing / zone
+            coarseness = frame * mesh.edge_spacing / max(zone, 1e-9 * frame)
         row = records[count]
         row[R_TIME], row[R_HEIGHT], row[R_FORCE], row[R_EDGE] = clock[TIME], h0 + u[n], force, edge
         row[R_AXIS], row[R_LOSS], row[R_COARSENESS] = u[0], loss, coarseness

@@ -16,6 +16,7 @@ from softafm.solvers.shapes import Shape, on_common_radii
 _CHUNK = 256
 _MOST_CYCLES = 150
 _PATIENCE = 8
+_SHARPEST = 3.2
 _MOST_TRIES_IN_A_FALL = 5000.0
 
 
@@ -279,7 +280,7 @@ class Run:
         )
 
     def _warnings(self) -> tuple[str, ...]:
-        return (*self._unsteady(), *self._too_coarse())
+        return (*self._unsteady(), *self._too_coarse(), *self._too_sharp())
 
     def _unsteady(self) -> tuple[str, ...]:
         if self.unsteady <= self.steadiness:
@@ -308,6 +309,16 @@ class Run:
             f"{self.solver.finest_spacing:g} contact radii) where "
             f"{self.target * spacing / coarseness:.2g} m is needed: forces and above all the loop "
             f"energy may be wrong. Lower solvers.Energy(finest_spacing=...), {remedy}",
+        )
+
+    def _too_sharp(self) -> tuple[str, ...]:
+        law = self.contact.surface
+        if not self.contact.adhesive or law.sharpness <= _SHARPEST:
+            return ()
+        return (
+            f"the tension of the surface law '{law.kind}' ends {law.sharpness:.2g} times as sharply "
+            f"as that of a Lennard-Jones law of its range; beyond {_SHARPEST:g} times the contact "
+            "edge may catch on the nodes, and forces be off by several per cent. Smooth the law",
         )
 
 

@@ -44,13 +44,13 @@ class Surface:
         # Where the cohesive zone ends: of a Lennard-Jones law the gap is twice that at the edge.
         opens = 3 ** (1 / 6) * contact.reach if contact.adhesive else self.edge_gap
         self.open_gap = self.edge_gap + opens
-        self.open_frame = contact.tip.radius_at(1.125 * contact.reach)
+        self.open_frame = contact.open_radius
         self.accuracy = 1e-3 * strictness
         sharpness = contact.surface.sharpness if contact.adhesive else 1.0
         self.target = 0.2 * strictness**0.2 / max(1.0, sharpness)
         self.growth = 0.25 * min(1.0, strictness**0.1)
         self.finest_level = max(0, ceil(log2(_COARSEST_SPACING / finest_spacing)))
-        self.level = self.first_level = self._level_for(0.4 * self._open_zone())
+        self.level = self.first_level = self._level_for(0.4 * contact.open_width / self.open_frame)
         self.mesh = self._mesh(self.level)
         self.meshes, self.most_nodes = 1, self.mesh.nodes.size
         self.finest_spacing, self.finest_used = self.mesh.edge_spacing, self.level
@@ -62,9 +62,7 @@ class Surface:
         first = contact.contact_radius(float(motion.height(breaks[0])))
         self.clock[k.FRAME] = k.frame_for(first, self.open_frame)
         self.background = k.Background(np.empty((0, 0)), 1.0, 1.0, 1.0, 1.0, 0.0)
-        if contact.adhesive:
-            work = contact.surface.work_of_adhesion
-            self.clock[k.FORCE_SCALE] = 0.2 * np.pi * contact.effective_radius * work
+        self.clock[k.FORCE_SCALE] = contact.force_scale
 
     def _mesh(self, level: int) -> k.Mesh:
         return k.Mesh(*unit_mesh(_COARSEST_SPACING * 2.0**-level, self.growth, EXTENT))
@@ -73,11 +71,6 @@ class Surface:
         """Level of the mesh whose edge spacing, in contact radii, is at most this."""
         level = ceil(log2(_COARSEST_SPACING / spacing) - 1e-9)
         return min(max(level, 0), self.finest_level)
-
-    def _open_zone(self) -> float:
-        """Width of the zone where the gap begins to open, before contact, in frames."""
-        tip, reach = self.contact.tip, self.contact.reach
-        return (tip.radius_at(2 * reach) - tip.radius_at(reach)) / self.open_frame
 
     @property
     def time(self) -> float:
@@ -142,9 +135,7 @@ class Surface:
     def _carried(self, fields, mesh: k.Mesh, stretch: float) -> np.ndarray:
         """Return fields (m, n) on another mesh, in a frame ``stretch`` times larger."""
         old, result = self.mesh, np.empty((len(fields), mesh.nodes.size))
-        k.transfer(
-            fields, old.nodes[-1], old.edge_spacing, old.growth, stretch, mesh.nodes, result
-        )
+        k.transfer(fields, old.nodes[-1], old.edge_spacing, old.growth, stretch, mesh.nodes, result)
         return result
 
     def settle(self) -> np.ndarray:
@@ -178,9 +169,7 @@ class Surface:
         self.fields[k.LOAD] = (v - u) / instantaneous
         gap = base + clock[k.DEFLECTION] - u
         law(gap, self.parameters.law, pressure, scratch, n)
-        force = k.tip_force(
-            pressure, gap, rise, mesh, frame, law, self.parameters.law, far_work
-        )
+        force = k.tip_force(pressure, gap, rise, mesh, frame, law, self.parameters.law, far_work)
         edge = frame * k.radius_of_gap(gap, mesh.nodes, self.edge_gap)
         zone = frame * k.radius_of_gap(gap, mesh.nodes, self.open_gap) - edge
         lag = self.fields[k.LOAD] - memory
@@ -194,7 +183,8 @@ class Surface:
         record[k.R_HEIGHT] = h0 + clock[k.DEFLECTION]
         record[k.R_EDGE], record[k.R_AXIS], record[k.R_FRAME] = edge, u[0], frame
         record[k.R_LOSS] = 2 * np.pi * frame * rates @ np.sum((lag @ mesh.stiffness) * lag, axis=1)
-        record[k.R_COARSENESS] = frame * mesh.edge_spacing / zone if edge else 0.0
+        spacing = frame * mesh.edge_spacing
+        record[k.R_COARSENESS] = spacing / max(zone, 1e-9 * frame) if edge else 0.0
         return record
 
     def energy(self) -> float:

@@ -137,9 +137,7 @@ class Work(NamedTuple):
     pivots: np.ndarray  # (e,) int
 
 
-SETUP = types.NamedTuple(
-    (int64, float64, float64, _M, _M, _V, _V, _V, _V, _V, _V, _V, _V), Setup
-)
+SETUP = types.NamedTuple((int64, float64, float64, _M, _M, _V, _V, _V, _V, _V, _V, _V, _V), Setup)
 MATERIAL = types.NamedUniTuple(_V, 3, Material)
 CONTROLS = types.NamedTuple(
     (float64, boolean, _V, float64, float64, int64, float64, float64, float64), Controls

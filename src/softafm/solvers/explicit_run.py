@@ -126,9 +126,7 @@ class _Run:
         self.state = np.zeros((rows, equations))
         self.state[0, : discretisation.flat.size] = discretisation.flat
         self.past = np.zeros((max(2, solver.stepper.weights.size), rows, equations))
-        self.work = _workspace(
-            self.past.shape, modes, nodes, unknowns, self.setup.far_rise.size
-        )
+        self.work = _workspace(self.past.shape, modes, nodes, unknowns, self.setup.far_rise.size)
         self.work.tip[0] = motion.height(motion.breaks[0])
         total = 1 + sum(piece.time.size - 1 for piece in self.pieces)
         self.records = np.empty((total, k.RECORD_WIDTH))

@@ -32,7 +32,8 @@ class Dugdale(SurfaceLaw):
     tension
         Constant tension σ0, Pa.
     smoothing
-        s over W/σ0, 0.02 to 0.3. Meshes become finer and runs longer the smaller it is.
+        s over W/σ0, 0.02 to 0.3. The default solver keeps its tolerance from 0.07 up and warns
+        below; the smaller it is the longer run contacts of high Tabor number.
 
     Raises
     ------

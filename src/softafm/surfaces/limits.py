@@ -11,7 +11,7 @@ def between(name: str, value: float, unit: str, least: float, most: float) -> fl
     number = finite(name, value, unit)
     if not least <= number <= most:
         shown = f"{name} = {number:g} {unit}".rstrip()
-        raise ValueError(f"{shown}: must be between {least:g} and {most:g}")
+        raise ValueError(f"{shown}: must be between {least:g} and {most:g} {unit}".rstrip())
     return number
 
 

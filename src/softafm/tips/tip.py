@@ -11,6 +11,7 @@ from softafm.formulas import Term
 
 _FIRST_RADIUS = 1e-12
 _MOST_DOUBLINGS = 200
+_ZOOMS, _POINTS = 9, 65
 _STEP = 3e-4
 _DIFFERENCES = ((1, 3 / 4), (2, -3 / 20), (3, 1 / 60))
 """Central differences of sixth order: multiple of the step and its weight."""
@@ -72,10 +73,11 @@ class Tip(ABC):
             low, high = high, 2 * high
         else:
             raise ValueError(f"height = {height:g} m: the tip does not reach it at any radius")
-        for _ in range(60):
-            middle = (low + high) / 2
-            low, high = (middle, high) if self.profile(middle) <= height else (low, middle)
-        return low
+        for _ in range(_ZOOMS):
+            radius = np.linspace(low, high, _POINTS)
+            above = int(np.argmax(self.profile(radius) > height))
+            low, high = radius[above - 1], radius[above]
+        return float(low)
 
     @property
     def compiled_profile(self):
