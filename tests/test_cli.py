@@ -240,6 +240,92 @@ def test_info_names_the_regime(softafm, folder, modulus, regime):
     assert regime in out
 
 
+MELT = "sample={model='maxwell', E0='1 GPa', viscosity='1 kPa s', poisson=0.4}"
+POWER_LAW = "sample={model='power-law', E1='1 MPa', exponent=0.3, poisson=0.5, window="
+WALL = "surface={law='repulsion', pressure_at_zero='100 MPa', decay='1 nm'}"
+
+
+@pytest.mark.parametrize(
+    ("override", "rows"),
+    [
+        (MELT, [r"Tabor number, slow +flows", r"cohesive length, slow +flows",
+                r"viscosity +1 kPa s +in tension, 357\.1 Pa s in shear",
+                r"Young's modulus +1 GPa +maxwell; 125 kPa after the motion",
+                r"JKR, at 595\.2 MPa as flow sets in"]),
+        (WALL, [r"work of adhesion +0 J/m² +repulsion: no adhesion", r"without adhesion, slow",
+                r"expected cost +under 1 s +no tension zone"]),
+        ("sample={model='epoxy'}", [r"creep times +24 modes +102\.2 ns to 105\.5 ks"]),
+        ("sample={model='elastic', E='1 GPa', poisson=0.3}", [r"modulus +1 GPa +elastic *\n"]),
+        (POWER_LAW + "['1 us', '1 ms']}", [r"\d modes .*the motion outlasts it", r"of the modes"]),
+        (POWER_LAW + "['1 us', '1 s']}", [r"represented .*modes +to 0\.\d+ %, from 1 µs to 1 s\b"]),
+        (POWER_LAW + "['1 s', '10 s']}", [r"ends before"]),
+        ("tip={shape='cone', half_angle='20 deg', apex_radius='10 nm'}",
+         [r"effective radius +9\.75 nm +of the cone"]),
+        ("tip.radius=5 um", [r"tip radius +5 µm +paraboloid"]),
+    ],
+)  # fmt: skip
+def test_info_on_every_kind_of_contact(folder, softafm, monkeypatch, override, rows):
+    monkeypatch.setenv("COLUMNS", "150")
+    code, out, err = softafm("info", "attard-triangle.toml", "--set", override)
+    assert (code, err) == (0, "")
+    assert not re.search(r"\b(nan|inf)\b", out)
+    for row in rows:
+        assert re.search(row, out)
+
+
+@pytest.mark.parametrize("override", [MELT, WALL])
+def test_info_compares_any_lever_with_any_contact(folder, softafm, override):
+    softafm("example", "ldpe-spectroscopy")
+    code, out, _ = softafm("info", "ldpe-spectroscopy.toml", "--set", override)
+    assert code == 0
+    stiffness = r"9\.712 N/m +2·E·a, at 595" if override == MELT else r"1\.861 N/m +2·E·a, slow"
+    assert re.search(rf"contact stiffness +{stiffness}", out)
+    assert ("the law only repels" in out) == (override == WALL)
+
+
+@pytest.mark.parametrize(
+    ("name", "steady"),
+    [("ps-approach-curve", ()), ("ldpe-tapping", ("--set", "motion.cycles=steady"))],
+)
+def test_info_refuses_flow_that_never_becomes_steady(folder, softafm, name, steady):
+    softafm("example", name)
+    line = refused(softafm("info", f"{name}.toml", "--set", MELT, *steady))
+    assert "the sample 'maxwell' flows" in line
+
+
+@pytest.mark.parametrize("suffix", ["png", "pdf", "svg"])
+def test_show_draws_what_touches(folder, softafm, suffix):
+    before = names(folder)
+    out = () if suffix == "png" else ("--out", f"attard-triangle-contact.{suffix}")
+    code, said, err = softafm("show", "attard-triangle.toml", "--set", MELT, *out)
+    assert (code, err) == (0, "")
+    assert said == f"saved attard-triangle-contact.{suffix}\n"
+    assert names(folder) == sorted([*before, f"attard-triangle-contact.{suffix}"])
+    beginning = {"png": b"\x89PNG", "pdf": b"%PDF", "svg": b"<?xml"}[suffix]
+    assert (folder / f"attard-triangle-contact.{suffix}").read_bytes().startswith(beginning)
+
+
+def test_a_motion_longer_than_the_window_of_a_sample_is_told(folder, softafm):
+    window = POWER_LAW + "['1 us', '1 ms']}"
+    code, _, err = softafm("run", "attard-triangle.toml", "--tolerance", "0.05", "--set", window)
+    assert code == 0
+    assert err.startswith("softafm: warning: the motion lasts 0.008 s, but the sample 'power-law'")
+
+
+def test_each_mode_warns_its_caller_of_a_window_too_short():
+    law = sa.PowerLaw(1e8, 0.3, (1e-7, 1e-6), 0.5)
+    contact = sa.Contact(sa.Paraboloid(1e-8), law, sa.LennardJones(1e-20, 0.3e-9))
+    ramp = sa.Triangle(2e-9, 0.2e-9, 1e-3)
+    for run in (
+        lambda: sa.force_distance(contact, ramp, tolerance=0.1),
+        lambda: sa.force_spectroscopy(contact, sa.Cantilever(10.0), ramp, tolerance=0.1),
+        lambda: sa.tapping_cycle(contact, 2e-9, 2.2e-9, 3e5, cycles=1, tolerance=0.1),
+    ):
+        with pytest.warns(sa.AccuracyWarning, match=r"^the motion lasts 3.*e-06 s") as warned:
+            run()
+        assert [Path(warning.filename).name for warning in warned] == ["test_cli.py"]
+
+
 def test_example_lists_and_writes(tmp_path, monkeypatch, softafm):
     monkeypatch.chdir(tmp_path)
     code, out, _ = softafm("example")
@@ -258,7 +344,7 @@ def test_version_and_help(softafm):
     assert softafm("run", "--help")[0] == 0
     code, out, _ = softafm("--help")
     assert code == 0
-    assert all(command in out for command in ("run", "example", "plot", "info", "export"))
+    assert all(command in out for command in ("run", "example", "plot", "show", "info", "export"))
     assert softafm()[:2] == (0, out)
 
 
@@ -271,6 +357,7 @@ def test_version_and_help(softafm):
         (("run", "ldpe-tapping.toml"), "ldpe-tapping.nc"),
         (("run", "ldpe-tapping.toml"), "other.nc"),
         (("plot", "result.nc"), "result.png"),
+        (("show", "ldpe-tapping.toml"), "ldpe-tapping-contact.png"),
         (("export", "result.nc"), "curve.csv"),
         (("example", "ldpe-tapping"), "ldpe-tapping.toml"),
     ],
@@ -368,6 +455,9 @@ def test_a_folder_or_a_wrong_suffix_is_no_output(folder, softafm):
         (("plot", "ldpe-tapping.toml"), "ldpe-tapping.toml: not a readable NetCDF file"),
         (("plot", "none.nc", "--out", "picture.bmp"), "--out = picture.bmp: must end in .png"),
         (("export", "none.nc", "--out", "a.csv"), "none.nc: no such file"),
+        (("show", "none.toml"), "none.toml: no such file"),
+        (("show", "ldpe-tapping.toml", "--out", "a.bmp"), "--out = a.bmp: must end in .png"),
+        (("show", "ldpe-tapping.toml", "--set", "tip.radius=1"), "tip.radius = 1: must be"),
     ],
 )  # fmt: skip
 def test_bad_input_is_refused_in_one_line(folder, softafm, arguments, reason):
@@ -483,8 +573,8 @@ def test_exit_codes_of_the_process(folder):
     assert bad.stderr == "softafm: none.toml: no such file\n"
 
 
-def test_importing_the_package_reads_neither_schema_nor_units():
-    heavy = "{'pydantic', 'pint', 'matplotlib'}"
+def test_importing_the_package_reads_nothing_heavy():
+    heavy = "{'pydantic', 'pint', 'matplotlib', 'scipy', 'numba', 'xarray'}"
     code = f"import sys, softafm, softafm.cli; print({heavy} & {{*sys.modules}})"
     said = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert said.stdout == "set()\n"

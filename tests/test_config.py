@@ -12,8 +12,22 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import softafm as sa
+from softafm import rheology, samples, schema, surfaces, tips
 from softafm.config import ConfigError, Experiment, example_names, example_text, load_experiment
-from softafm.units import FORCE, LENGTH, MODULUS, STIFFNESS, read_quantity, readable
+from softafm.surfaces import read_law
+from softafm.units import (
+    ANGLE,
+    CONCENTRATION,
+    FORCE,
+    LENGTH,
+    MODULUS,
+    STIFFNESS,
+    TEMPERATURE,
+    VISCOSITY,
+    VOLTAGE,
+    read_quantity,
+    readable,
+)
 
 TAP = {
     "mode": "tapping-cycle",
@@ -217,6 +231,210 @@ def test_samples(load, sample, solid):
     assert type(built) is type(solid)
     for part, expected in zip(built.reduced_compliance, solid.reduced_compliance, strict=True):
         np.testing.assert_allclose(part, expected, rtol=1e-14)
+
+
+PRONY = {"relaxation_times": ["1 ms", "1 s"], "poisson": 0.5}
+POWER = {"exponent": 0.5, "window": ["1 ms", "1 s"], "poisson": 0.5}
+SALT = {"hamaker": "1e-20 J", "z0": "0.3 nm", "surface_potential": "-25 mV"}
+STICKY = {"work_of_adhesion": "50 mJ/m^2", "z0": "0.3 nm"}
+BRUSH = {"law": "repulsion", "pressure_at_zero": "100 MPa", "decay": "0.5 nm"}
+FILES = {
+    "tip.csv": "radius (nm),height (nm)\n0,0.2\n2,0.4\n4,1.1\n6,2.2\n",
+    "law.csv": "gap (nm),pressure (MPa)\n0.2,900\n0.3,0\n0.4,-110\n0.6,-40\n1,-9\n2,-1.1\n",
+    "dma.csv": "frequency (Hz),storage (MPa),loss (MPa)\n1,1,0.2\n10,1.5,0.6\n100,3,1\n",
+}
+DMA = [1.0, 10.0, 100.0], [1e6, 1.5e6, 3e6], [2e5, 6e5, 1e6]
+NM = 1e-9
+BUILT = [
+    ("tip", "paraboloid", {"radius": "10 nm"}, tips.Paraboloid(10 * NM)),
+    ("tip", "sphere", {"radius": "2 um"}, tips.Sphere(2e-6)),
+    (
+        *("tip", "cone", {"half_angle": "20 deg", "apex_radius": "8 nm"}),
+        tips.Cone(math.radians(20), 8 * NM),
+    ),
+    (
+        *("tip", "hyperboloid", {"half_angle": "0.35 rad", "radius": "8 nm"}),
+        tips.Hyperboloid(8 * NM, 0.35),
+    ),
+    (
+        *("tip", "flat-punch", {"radius": "1 um", "edge_radius": "0.1 um"}),
+        tips.FlatPunch(1e-6, 1e-7),
+    ),
+    (
+        *("tip", "power-law", {"exponent": 4, "height": "3 nm", "radius": "10 nm"}),
+        tips.PowerLawTip(4.0, 3 * NM, 10 * NM),
+    ),
+    (
+        *("tip", "measured", {"file": "tip.csv"}),
+        tips.MeasuredTip((0, 2 * NM, 4 * NM, 6 * NM), (0.2 * NM, 0.4 * NM, 1.1 * NM, 2.2 * NM)),
+    ),
+    ("sample", "elastic", {"E": "1 MPa", "poisson": 0.3}, sa.Elastic(1e6, 0.3)),
+    (
+        *("sample", "standard-linear-solid"),
+        {"E0": "2 GPa", "E_inf": "1 GPa", "creep_time": "3 us", "poisson": 0.4},
+        sa.StandardLinearSolid(2e9, 1e9, 3e-6, 0.4),
+    ),
+    (
+        *("sample", "kelvin-voigt", {"E": "1 MPa", "creep_time": "1 ms", "poisson": 0.5}),
+        rheology.KelvinVoigt(1e6, 1e-3, 0.5),
+    ),
+    (
+        *("sample", "kelvin-voigt", {"E": "1 MPa", "viscosity": "2 kPa s", "poisson": 0.5}),
+        rheology.KelvinVoigt.from_viscosity(1e6, 2e3, 0.5),
+    ),
+    (
+        *("sample", "kelvin-voigt", {"G": "1 MPa", "viscosity": "2 kPa s", "poisson": 0.5}),
+        rheology.KelvinVoigt.from_shear(1e6, 2e3, 0.5),
+    ),
+    (
+        *("sample", "maxwell", {"E0": "1 MPa", "relaxation_time": "1 ms", "poisson": 0.5}),
+        rheology.Maxwell(1e6, 1e-3, 0.5),
+    ),
+    (
+        *("sample", "maxwell", {"E0": "1 MPa", "viscosity": "2 kPa s", "poisson": 0.5}),
+        rheology.Maxwell.from_viscosity(1e6, 2e3, 0.5),
+    ),
+    (
+        *("sample", "maxwell", {"G0": "1 MPa", "viscosity": "2 kPa s", "poisson": 0.5}),
+        rheology.Maxwell.from_shear(1e6, 2e3, 0.5),
+    ),
+    (
+        *("sample", "generalized-kelvin-voigt"),
+        {k: v for k, v in KELVIN_VOIGT.items() if k != "model"},
+        sa.GeneralizedKelvinVoigt(2e9, (1e-9, 2e-9), (1e-6, 1e-5), 0.3),
+    ),
+    (
+        *("sample", "generalized-maxwell"),
+        {"E_inf": "1 MPa", "moduli": ["2 MPa", "3 MPa"], **PRONY},
+        rheology.GeneralizedMaxwell(1e6, (2e6, 3e6), (1e-3, 1.0), 0.5),
+    ),
+    (
+        *("sample", "generalized-maxwell"),
+        {"G_inf": "1 MPa", "shear_moduli": ["2 MPa", "3 MPa"], **PRONY},
+        rheology.GeneralizedMaxwell.from_shear(1e6, (2e6, 3e6), (1e-3, 1.0), 0.5),
+    ),
+    (
+        *("sample", "generalized-maxwell", {"E0": "8 MPa", "ratios": [0.25, 0.5], **PRONY}),
+        rheology.GeneralizedMaxwell.from_ratios(8e6, (0.25, 0.5), (1e-3, 1.0), 0.5),
+    ),
+    (
+        *("sample", "power-law", {"E1": "1 kPa", "reference_time": "1 ms", "error": 0.02, **POWER}),
+        rheology.PowerLaw(1e3, 0.5, (1e-3, 1.0), 0.5, 1e-3, 0.02),
+    ),
+    (
+        *("sample", "fractional-standard-linear-solid"),
+        {"E0": "1 GPa", "E_inf": "10 MPa", "creep_time": "10 ms", **POWER},
+        rheology.FractionalStandardLinearSolid(1e9, 1e7, 1e-2, 0.5, (1e-3, 1.0), 0.5),
+    ),
+    (
+        *("sample", "measured-moduli", {"file": "dma.csv", "poisson": 0.4, "per_decade": 1}),
+        rheology.GeneralizedMaxwell.from_dma(*DMA, poisson=0.4, per_decade=1),
+    ),
+    ("sample", "ldpe", {}, samples.ldpe()),
+    ("sample", "polystyrene", {}, samples.polystyrene()),
+    ("sample", "pdms", {}, samples.pdms()),
+    ("sample", "pdms", {"mixing_ratio": 20}, samples.pdms(20)),
+    ("sample", "polyisobutylene", {}, samples.polyisobutylene()),
+    ("sample", "epoxy", {"poisson": 0.4}, samples.epoxy(0.4)),
+    ("surface", "lennard-jones", {"hamaker": "1e-19 J", "z0": "0.3 nm"},
+     surfaces.LennardJones(1e-19, 0.3 * NM)),
+    ("surface", "lennard-jones", STICKY,
+     surfaces.LennardJones.from_work_of_adhesion(0.05, 0.3 * NM)),
+    ("surface", "van-der-waals", {"hamaker": "1e-19 J", "z0": "0.3 nm", "exponent": 15},
+     surfaces.VanDerWaals(1e-19, 0.3 * NM, 15.0)),
+    ("surface", "van-der-waals", STICKY,
+     surfaces.VanDerWaals.from_work_of_adhesion(0.05, 0.3 * NM)),
+    ("surface", "dmt", {"hamaker": "1e-19 J", "z0": "0.3 nm"}, surfaces.DMT(1e-19, 0.3 * NM)),
+    ("surface", "dmt", {**STICKY, "wall": 0.2},
+     surfaces.DMT.from_work_of_adhesion(0.05, 0.3 * NM, 0.2)),
+    ("surface", "exponential", {**STICKY, "decay": "0.3 nm", "core": "0.05 nm"},
+     surfaces.Exponential(0.05, 0.3 * NM, 0.3 * NM, 0.05 * NM)),
+    ("surface", "morse", {**STICKY, "decay": "0.15 nm"},
+     surfaces.Morse(0.05, 0.3 * NM, 0.15 * NM)),
+    ("surface", "dugdale", {**STICKY, "tension": "100 MPa"},
+     surfaces.Dugdale(0.05, 0.3 * NM, 1e8)),
+    ("surface", "dlvo", {**SALT, "debye_length": "9.6 nm", "tip_potential": "0.05 V"},
+     surfaces.DLVO(1e-20, 0.3 * NM, -0.025, 9.6 * NM, tip_potential=0.05)),
+    ("surface", "dlvo",
+     {**SALT, "concentration": "1 mmol/L", "temperature": "310 K", "permittivity": 74},
+     surfaces.DLVO.from_concentration(1e-20, 0.3 * NM, -0.025, 1e-3, 310.0, 74.0)),
+    ("surface", "repulsion", {"pressure_at_zero": "100 MPa", "decay": "0.5 nm"},
+     surfaces.Repulsion(1e8, 0.5 * NM)),
+    ("surface", "tabulated", {"file": "law.csv"},
+     surfaces.Tabulated((2e-10, 3e-10, 4e-10, 6e-10, 1e-9, 2e-9),
+                        (9e8, 0.0, -1.1e8, -4e7, -9e6, -1.1e6))),
+    ("surface", "sum",
+     {"parts": [BRUSH, {"law": "van-der-waals-attraction", "hamaker": "1e-20 J"},
+                {"law": "tabulated", "file": "law.csv"}]},
+     None),
+]  # fmt: skip
+
+
+def same(one, other):
+    """Whether two things are equal but for rounding."""
+    if dataclasses.is_dataclass(one):
+        return type(one) is type(other) and all(
+            same(getattr(one, f.name), getattr(other, f.name)) for f in dataclasses.fields(one)
+        )
+    if isinstance(one, tuple):
+        return len(one) == len(other) and all(map(same, one, other))
+    return one == (pytest.approx(other, rel=1e-12) if isinstance(other, float) else other)
+
+
+@pytest.mark.parametrize(("table", "choice", "keys", "thing"), BUILT)
+def test_every_choice_is_what_python_builds(load, table, choice, keys, thing):
+    for name, content in FILES.items():
+        (load.folder / name).write_text(content)
+    chooser, _ = schema.CHOICES[table]
+    written = getattr(load({**TAP, table: {chooser: choice, **keys}}).contact, table)
+    if thing is None:
+        brush, attraction = surfaces.Repulsion(1e8, 0.5 * NM), surfaces.VanDerWaalsAttraction(1e-20)
+        thing = brush + attraction + read_law(load.folder / "law.csv")
+    assert same(written, thing)
+
+
+def test_every_choice_is_among_those_built():
+    built = {(table, choice) for table, choice, _, _ in BUILT}
+    for table, (_, choices) in schema.CHOICES.items():
+        if table != "solver":
+            only_in_sums = {"van-der-waals-attraction"} if table == "surface" else set()
+            assert {choice for of, choice in built if of == table} == set(choices) - only_in_sums
+
+
+def test_files_are_sought_beside_the_experiment_or_where_the_path_says(load, tmp_path):
+    (load.folder / "measured").mkdir(exist_ok=True)
+    for path in ("measured/tip.csv", str(tmp_path / "tip.csv")):
+        (load.folder / path).write_text(FILES["tip.csv"])
+        tip = load({**TAP, "tip": {"shape": "measured", "file": path}}).contact.tip
+        assert tip.r == pytest.approx([0, 2e-9, 4e-9, 6e-9])
+
+
+def test_parts_of_a_sum_may_be_written_as_tables(load):
+    text = (
+        toml({k: v for k, v in TAP.items() if k != "surface"})
+        + """
+[surface]
+law = "sum"
+
+[[surface.parts]]
+law = "lennard-jones"
+hamaker = "1e-19 J"
+z0 = "0.3 nm"
+
+[[surface.parts]]
+law = "repulsion"
+pressure_at_zero = "100 MPa"
+decay = "0.5 nm"
+"""
+    )
+    law = load(text).contact.surface
+    assert same(law, surfaces.LennardJones(1e-19, 3e-10) + surfaces.Repulsion(1e8, 5e-10))
+
+
+def test_a_law_that_only_repels_is_no_mistake(load):
+    contact = load({**CURVE, "surface": BRUSH}).contact
+    assert not contact.adhesive
+    assert contact.tabor_relaxed == 0
 
 
 def test_a_surface_may_be_given_by_its_work_of_adhesion(load):
@@ -429,10 +647,28 @@ def test_unknown_example():
         ("2.5 mN/m", STIFFNESS, 0.0025),
         ("5 nN", FORCE, 5e-9),
         ("120 pN", FORCE, 1.2e-10),
+        ("180 deg", ANGLE, math.pi),
+        ("180 degrees", ANGLE, math.pi),
+        ("180°", ANGLE, math.pi),
+        ("0.35 rad", ANGLE, 0.35),
+        ("-25 mV", VOLTAGE, -0.025),
+        ("300 K", TEMPERATURE, 300.0),
+        ("1 mM", CONCENTRATION, 1e-3),
+        ("1 mmol/L", CONCENTRATION, 1e-3),
+        ("1 mol/m^3", CONCENTRATION, 1e-3),
+        ("2 kPa s", VISCOSITY, 2e3),
+        ("2 Pa·s", VISCOSITY, 2.0),
+        ("1 cP", VISCOSITY, 1e-3),
     ],
 )
 def test_quantities(written, kind, value):
-    assert read_quantity(written, kind) == value
+    assert read_quantity(written, kind) == pytest.approx(value, rel=1e-14)
+
+
+@pytest.mark.parametrize("written", ["25 degC", "25 °C", "250 degC", "300 degF"])
+def test_temperatures_count_from_absolute_zero(written):
+    with pytest.raises(ValueError, match=r"such as '298 K'; '.*' does not count from zero, 'K'"):
+        read_quantity(written, TEMPERATURE)
 
 
 @given(st.floats(1e-3, 1e3), st.sampled_from(["pm", "nm", "µm", "um", "mm"]))
@@ -834,6 +1070,169 @@ def test_fixed_steps_refuse_a_setpoint_of_force(load):
 )
 def test_bad_kelvin_voigt_chains(load, change, line):
     assert refusal(load, {**TAP, "sample": {**KELVIN_VOIGT, **change}}).startswith(line)
+
+
+WINDOW = ["1 ms", "1 s"]
+MAXWELL = {"model": "generalized-maxwell", "E_inf": "1 MPa", "moduli": ["1 MPa"], **PRONY}
+CELL = {"model": "power-law", "E1": "1 kPa", "exponent": 0.2, "window": WINDOW, "poisson": 0.5}
+CONE = {"shape": "cone", "half_angle": "20 deg", "apex_radius": "8 nm"}
+
+
+@pytest.mark.parametrize(
+    ("table", "keys", "line"),
+    [
+        ("tip", {**CONE, "half_angle": 20}, "tip.half_angle = 20: must be an angle with its unit, "
+         "such as '20 deg'; the unit is missing"),
+        ("tip", {**CONE, "half_angle": "95 deg"}, "tip.half_angle = '95 deg': must be above 0 and"),
+        ("tip", {**CONE, "apex_radius": "0 nm"}, "tip.apex_radius = '0 nm': must be greater than"),
+        ("tip", {**CONE, "radius": "8 nm"}, "tip.radius: unknown key; did you mean 'apex_radius'?"),
+        ("tip", {"shape": "cone", "apex_radius": "8 nm"}, "tip.half_angle: missing; must be an an"),
+        ("tip", {"shape": "flat-punch", "radius": "1 nm", "edge_radius": "2 nm"},
+         "tip.edge_radius = '2 nm': must be at most tip.radius = '1 nm'"),
+        ("tip", {"shape": "power-law", "exponent": 1.5, "height": "1 nm", "radius": "1 nm"},
+         "tip.exponent = 1.5: must be from 2 to 50"),
+        ("tip", {"shape": "hyperbola"}, "tip.shape = 'hyperbola': did you mean 'hyperboloid'?"),
+        ("tip", {"shape": "measured"}, "tip.file: missing; must be the name of a CSV file"),
+        ("sample", {"model": "ldppe"}, "sample.model = 'ldppe': did you mean 'ldpe'?"),
+        ("sample", {"model": "ldpe", "poisson": 0.3}, "sample.poisson: unknown key; must be 'mod"),
+        ("sample", {"model": "pdms", "mixing_ratio": 3}, "sample.mixing_ratio = 3: must be from 5"),
+        ("sample", {"model": "epoxy", "poisson": 0.6}, "sample.poisson = 0.6: must be above -1"),
+        ("sample", {"model": "kelvin-voigt", "E": "1 MPa", "poisson": 0.5},
+         "sample: give E and creep_time, or E and viscosity, or G and viscosity; found E"),
+        ("sample", {"model": "maxwell", "E0": "1 MPa", "relaxation_time": "-1 s", "poisson": 0.5},
+         "sample.relaxation_time = '-1 s': must be greater than 0"),
+        ("sample", {"model": "maxwell", "G0": "1 MPa", "viscosity": "1 Pa", "poisson": 0.5},
+         "sample.viscosity = '1 Pa': must be a viscosity with its unit, such as '1 kPa s'; 'Pa'"),
+        ("sample", {**MAXWELL, "moduli": ["1 MPa", "-3 MPa"]},
+         "sample.moduli[1] = '-3 MPa': must not be negative"),
+        ("sample", {**MAXWELL, "relaxation_times": ["1 ms", "0 s"]},
+         "sample.relaxation_times[1] = '0 s': must be greater than 0"),
+        ("sample", MAXWELL,
+         "sample.relaxation_times = ['1 ms', '1 s']: has 2 entries: must have as many as moduli,"),
+        ("sample", {**MAXWELL, "E0": "1 MPa"},
+         "sample: give E_inf and moduli, or G_inf and shear_moduli, or E0 and ratios; found"),
+        ("sample", {"model": "generalized-maxwell", "E0": "1 MPa", "ratios": [0.5], **PRONY},
+         "sample.relaxation_times = ['1 ms', '1 s']: has 2 entries: must have as many as ratios,"),
+        ("sample", {"model": "generalized-maxwell", "E0": "1 MPa", "ratios": [0.5, 0.6], **PRONY},
+         "sample.ratios = [0.5, 0.6]: add up to 1.1: must add up to at most 1"),
+        ("sample", {"model": "generalized-maxwell", "G_inf": "0 Pa", "shear_moduli": ["0 Pa"],
+                    **PRONY, "relaxation_times": ["1 s"]},
+         "sample.shear_moduli = ['0 Pa']: has no entry above 0 Pa: must have one where "
+         "sample.G_inf = '0 Pa'"),
+        ("sample", {**CELL, "window": ["1 s", "1 ms"]},
+         "sample.window = ['1 s', '1 ms']: must be the shortest and a longer time of the exp"),
+        ("sample", {**CELL, "window": ["1 ms"]}, "sample.window = ['1 ms']: must be the shortest"),
+        ("sample", {**CELL, "window": ["1 ms", "1 m"]}, "sample.window[1] = '1 m': must be a time"),
+        ("sample", {**CELL, "exponent": 1}, "sample.exponent = 1: must be above 0 (elastic) and b"),
+        ("sample", {**CELL, "window": ["1e-20 s", "1e20 s"], "error": 1e-3},
+         "sample.window = ['1e-20 s', '1e20 s']: error = 0.001 over window = (1e-20, 1e+20) s "
+         "needs more than 40 modes: must be larger, or the window shorter"),
+        ("sample", {"model": "fractional-standard-linear-solid", "E0": "1 GPa", "E_inf": "2 GPa",
+                    "creep_time": "1 ms", **POWER},
+         "sample.E_inf = '2 GPa': must be at most sample.E0 = '1 GPa'"),
+        ("surface", {"law": "morse", **STICKY}, "surface.decay: missing; must be a length with it"),
+        ("surface", {"law": "mors"}, "surface.law = 'mors': did you mean 'morse'?"),
+        ("surface", {"law": "dmt", **STICKY, "wall": 0.5},
+         "surface.wall = 0.5: must be between 0.02 and 0.25"),
+        ("surface", {"law": "dmt", **STICKY, "hamaker": "1e-19 J"},
+         "surface: give hamaker, or work_of_adhesion; found "),
+        ("surface", {"law": "dugdale", **STICKY, "tension": "1 Pa"},
+         "surface.tension = '1 Pa': work_of_adhesion/tension = 0.05 m: must be between"),
+        ("surface", {"law": "exponential", **STICKY, "decay": "0.1 nm", "core": "0.2 nm"},
+         "surface.core = '0.2 nm': must be shorter than surface.decay = '0.1 nm'"),
+        ("surface", {"law": "dlvo", **SALT, "surface_potential": "25 nm", "concentration": "1 mM"},
+         "surface.surface_potential = '25 nm': must be a voltage with its unit, such as '-25 mV'"),
+        ("surface", {"law": "dlvo", **SALT}, "surface: give debye_length, or concentration; found"),
+        ("surface", {"law": "dlvo", **SALT, "concentration": "1 mM", "temperature": "25 degC"},
+         "surface.temperature = '25 degC': must be a temperature with its unit, such as '298 K'"),
+        ("surface", {**BRUSH, "decay": "1 m"}, "surface.decay = '1 m': must be between 2e-12 and "
+         "1e-06 m"),
+        ("surface", {"law": "van-der-waals-attraction", "hamaker": "1e-20 J"},
+         "surface.law = 'van-der-waals-attraction': its pressure at a gap of 1e-12 m is "),
+        ("surface", {"law": "sum"}, "surface.parts: missing; must be tables [[surface.parts]], ea"),
+        ("surface", {"law": "sum", "parts": []}, "surface.parts = []: must be a list, in square"),
+        ("surface", {"law": "sum", "parts": [BRUSH, 3]},
+         "surface.parts[1] = 3: must be a table with a law"),
+        ("surface", {"law": "sum", "parts": [{}]}, "surface.parts[0].law: missing; must be 'lenn"),
+        ("surface", {"law": "sum", "parts": [BRUSH, {"law": "morze"}]},
+         "surface.parts[1].law = 'morze': did you mean 'morse'?"),
+        ("surface", {"law": "sum", "parts": [{"law": [1]}]}, "surface.parts[0].law = [1]: must be"),
+        ("surface", {"law": "sum", "parts": [{"law": "sum"}]}, "surface.parts[0].law = 'sum': mu"),
+        ("surface", {"law": "sum", "parts": [BRUSH, {**BRUSH, "decay": "0.5"}]},
+         "surface.parts[1].decay = '0.5': must be a length with its unit, such as '10 nm'; the un"),
+        ("surface", {"law": "sum", "parts": [BRUSH, {**BRUSH, "decay": "-1 nm"}]},
+         "surface.parts[1].decay = '-1 nm': must be between 2e-12 and 1e-06 m"),
+        ("surface", {"law": "sum", "parts": [{**BRUSH, "decai": "1 nm"}]},
+         "surface.parts[0].decai: unknown key; did you mean 'decay'?"),
+        ("surface", {"law": "sum", "parts": [{"law": "dmt", "z0": "1 nm"}]},
+         "surface.parts[0]: give hamaker, or work_of_adhesion; found none of them"),
+        ("surface", {"law": "sum", "parts": [{"law": "van-der-waals-attraction",
+                                              "hamaker": "1e-20 J"}]},
+         "surface.law = 'sum': its pressure at a gap of 1e-12 m is "),
+    ],
+)  # fmt: skip
+def test_bad_tips_samples_and_surfaces(load, table, keys, line):
+    assert refusal(load, {**TAP, table: keys}).startswith(line)
+
+
+@pytest.mark.parametrize(
+    ("table", "keys", "content", "line"),
+    [
+        ("tip", {"shape": "measured"}, "radius (nm),height (nm)\n0,0\n2,0.4\n4,0.3\n6,2\n",
+         "height[2] = 3e-10 m at r = 4e-09 m: must not be below height[1] = 4e-10 m"),
+        ("tip", {"shape": "measured"}, "radius,height\n0,0\n", "has no column 'radius' with a u"),
+        ("sample", {"model": "measured-moduli", "poisson": 0.4},
+         "frequency (Hz),storage (MPa),loss (MPa)\n1,1,.1\n10,2,.1\n5,3,.1\n",
+         "frequency[2] = 5 Hz: must be above frequency[1] = 10 Hz"),
+        ("sample", {"model": "measured-moduli", "poisson": 0.4},
+         "frequency (Hz),storage (MPa),loss (MPa)\n1,1,.1\n10,2,.1\n50,1,.1\n",
+         "storage[2] = 1e+06 Pa at 50 Hz: must not fall more than 5 % below storage[1] = 2e+06 Pa"),
+        ("sample", {"model": "measured-moduli", "poisson": 0.4},
+         "frequency (Hz),storage (MPa),loss (MPa)\n1,1,.1\n10,2,-0.1\n",
+         "loss[1] = -100000 Pa: must be finite and greater than 0"),
+        ("surface", {"law": "tabulated"},
+         "gap (nm),pressure (MPa)\n0.2,-1\n0.3,-0.5\n0.5,-0.1\n1,-0.01\n",
+         "pressures[0] = -1e+06 Pa at 2e-10 m: must repel, above 0; begin the table at a shorter"),
+        ("surface", {"law": "tabulated"}, "gap (nm),pressure (MPa)\n0.2,9\n0.3,x\n",
+         "line 3 ('0.3,x') must hold a gap and a pressure"),
+    ],
+)  # fmt: skip
+def test_bad_measured_things(load, table, keys, content, line):
+    (load.folder / "data.csv").write_text(content)
+    document = {**TAP, table: {**keys, "file": "data.csv"}}
+    assert refusal(load, document).startswith(f"{table}.file = 'data.csv': {line}")
+    document = {**TAP, table: {**keys, "file": "none.csv"}}
+    assert refusal(load, document) == f"{table}.file = 'none.csv': no such file"
+
+
+def test_what_is_wrong_beside_a_good_file_is_not_blamed_on_it(load):
+    (load.folder / "dma.csv").write_text(FILES["dma.csv"])
+    sample = {"model": "measured-moduli", "file": "dma.csv", "poisson": 0.4}
+    for key, value, reason in (
+        ("poisson", 0.7, "must be above -1 and at most 0.5"),
+        ("per_decade", 50, "must be between 0.5 and 10"),
+    ):
+        line = refusal(load, {**TAP, "sample": {**sample, key: value}})
+        assert line == f"sample.{key} = {value}: {reason}"
+
+
+@given(
+    st.sampled_from([b for b in BUILT if b[2]]).flatmap(
+        lambda built: st.tuples(st.just(built), st.sampled_from(sorted(built[2]))),
+    ),
+    anything,
+)
+@few
+def test_garbage_in_tips_samples_and_surfaces(load, built, value):
+    (table, choice, keys, _), key = built
+    for name, content in FILES.items():
+        (load.folder / name).write_text(content)
+    chooser, _ = schema.CHOICES[table]
+    document = {**TAP, table: {chooser: choice, **keys, key: value}}
+    with contextlib.suppress(ConfigError):
+        load(document)
+        return
+    assert refusal(load, document).startswith(f"{table}.{key}")
 
 
 def test_several_problems_are_told_together(load):

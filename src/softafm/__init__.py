@@ -7,6 +7,7 @@ from softafm.animation import animate
 from softafm.cantilever import Cantilever
 from softafm.contact import Contact
 from softafm.errors import AccuracyWarning, DivergedError
+from softafm.laboratory_drawing import plot_contact
 from softafm.modes.approach import approach_curve
 from softafm.modes.force_distance import force_distance
 from softafm.modes.spectroscopy import force_spectroscopy
@@ -24,7 +25,9 @@ from softafm.rheology import (
     StandardLinearSolid,
     read_dma,
 )
+from softafm.rheology_drawing import plot_rheology
 from softafm.storyboard import plot_profiles
+from softafm.surface_drawing import plot_surface
 from softafm.surfaces import (
     DLVO,
     DMT,
@@ -100,7 +103,10 @@ __all__ = [
     "force_spectroscopy",
     "indentation",
     "load",
+    "plot_contact",
     "plot_profiles",
+    "plot_rheology",
+    "plot_surface",
     "plot_tip",
     "read_dma",
     "read_law",

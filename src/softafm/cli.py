@@ -1,4 +1,4 @@
-"""The command line: ``softafm run``, ``example``, ``plot``, ``animate``, ``info`` and ``export``.
+"""The command line: ``softafm example``, ``info``, ``show``, ``run``, ``plot`` and more.
 
 Everything heavy is imported inside the commands, so that ``softafm --help`` answers at once.
 """
@@ -19,6 +19,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 if TYPE_CHECKING:
+    from matplotlib.figure import Figure
     from xarray import Dataset
 
 SUCCESS, FAILURE, BAD_INPUT = 0, 1, 2
@@ -121,7 +122,7 @@ def run(
         except RuntimeError as error:
             raise _Failure(f"the run failed: {error}") from error
     _save(results.save, dataset, out, force)
-    _show(observables(dataset))
+    _print(observables(dataset))
     typer.echo(f"saved {out}")
 
 
@@ -174,10 +175,7 @@ def plot(
             figure = plot_profiles(datasets[0])
         else:
             figure = draw(datasets, labels=[path.stem for path in results])
-    picture = io.BytesIO()
-    figure.savefig(picture, format=out.suffix[1:].lower(), dpi=150)
-    _write(out, picture.getvalue())
-    typer.echo(f"saved {out}")
+    _save_figure(figure, out)
 
 
 @app.command()
@@ -228,8 +226,26 @@ def info(config: Config, overrides: Overrides = None) -> None:
         from softafm.config import load_experiment
         from softafm.summary import regime
 
-        experiment = load_experiment(config, overrides or [])
-    _show(regime(experiment))
+        table = regime(load_experiment(config, overrides or []))
+    _print(table)
+
+
+@app.command()
+def show(
+    config: Config,
+    out: Annotated[Path | None, typer.Option(help="Figure; default CONFIG-contact.png.")] = None,
+    overrides: Overrides = None,
+    force: Force = False,
+) -> None:
+    """Draw what touches in an experiment: tip, surface law and sample."""
+    with _bad_input():
+        out = _output(out, f"{config.stem}-contact.png", _PICTURES, force)
+
+        from softafm.config import load_experiment
+        from softafm.laboratory_drawing import plot_contact
+
+        figure = plot_contact(load_experiment(config, overrides or []).contact)
+    _save_figure(figure, out)
 
 
 @app.command()
@@ -302,6 +318,13 @@ def _write(path: Path, content: bytes) -> None:
         raise
 
 
+def _save_figure(figure: "Figure", out: Path) -> None:
+    picture = io.BytesIO()
+    figure.savefig(picture, format=out.suffix[1:].lower(), dpi=150)
+    _write(out, picture.getvalue())
+    typer.echo(f"saved {out}")
+
+
 def _save(write: Callable, dataset: "Dataset", out: Path, force: bool) -> None:
     """Write by ``results.save`` or ``results.export``."""
     try:
@@ -312,7 +335,7 @@ def _save(write: Callable, dataset: "Dataset", out: Path, force: bool) -> None:
         raise _Failure(f"{out} could not be written: {error.strerror or error}") from error
 
 
-def _show(renderable) -> None:
+def _print(renderable) -> None:
     from rich.console import Console
 
     Console().print(renderable)

@@ -262,10 +262,11 @@ def _build(name: str, document: Mapping[str, Any], mode: Any, folder: Path) -> A
         return schema.chosen(name, written, "shape", shapes, default=default, folder=folder)
     thing = schema.chosen(name, written, *schema.CHOICES[name], folder=folder)
     try:
+        # Both are found when first asked for, and may not exist.
         if name == "sample":
-            thing.reduced_compliance  # noqa: B018: found now, for it may need too many modes
+            _ = thing.reduced_compliance
         elif name == "surface" and thing.attracts:
-            thing.equilibrium_gap  # noqa: B018: found now, for it may not exist
+            _ = thing.equilibrium_gap
     except ValueError as error:
         key = "window" if name == "sample" else "law"
         reason = str(error).removeprefix(f"surface law '{thing.kind}': ")

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-_SAMPLES = 300
+SAMPLES = 300
 _DEEPEST = 1e8
 
 
@@ -51,7 +51,7 @@ def plot_rheology(
 
     measured = None if data is None else checked(*data)
     shortest, longest = times_of(sample, measured) if window is None else window_of(window)
-    time = np.geomspace(shortest, longest, _SAMPLES)
+    time = np.geomspace(shortest, longest, SAMPLES)
     figure = Figure(figsize=(10.4, 4.2), dpi=150, layout=ConstrainedLayoutEngine(wspace=0.06))
     against_time, against_frequency = figure.subplots(1, 2)
     draw_steps(against_time, sample, time)

@@ -489,7 +489,8 @@ def _tabulated(file: Path) -> Any:
 
 
 def _measured_moduli(file: Path, poisson: float, per_decade: float = 2.0) -> Any:
-    return GeneralizedMaxwell.from_dma(*_read_file(read_dma, file), poisson, per_decade)
+    frequency, storage, loss = _read_file(read_dma, file)
+    return GeneralizedMaxwell.from_dma(frequency, storage, loss, poisson, per_decade)
 
 
 class SumSurface(Table):

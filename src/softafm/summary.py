@@ -1,24 +1,32 @@
 """Tables for people: what a run found, and what an experiment is before it runs."""
 
+from math import isfinite
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from rich.table import Table
 
 from softafm.modes.approach import deepest_tap, drive_of
+from softafm.modes.start import refuse_steady_flow
 from softafm.motions import lowest_height
+from softafm.rheology.represented import Represented
 from softafm.solvers.energy import Energy, cohesive_lengths_crossed
 from softafm.sweeps import DIRECTIONS, jumps_of
+from softafm.tips import Paraboloid
 from softafm.units import readable
 
 if TYPE_CHECKING:
     from xarray import Dataset
 
     from softafm.config import Experiment
+    from softafm.contact import Contact
     from softafm.oscillator import Drive
 
 _TAPS = 130
 """Taps of an approach curve, by experience."""
+_FLOWS = "flows"
+_FEW = 4
+"""Creep times up to which each has a row of its own."""
 
 
 def observables(dataset: "Dataset") -> Table:
@@ -63,9 +71,17 @@ def _degrees(phase: np.ndarray) -> str:
 
 
 def regime(experiment: "Experiment") -> Table:
-    """Return a table of the numbers that say how a contact will behave and what it will cost."""
+    """Return a table of the numbers that say how a contact will behave and what it will cost.
+
+    Raises
+    ------
+    ValueError
+        If the motion is to become steady and the sample flows.
+    """
     contact, motion = experiment.contact, experiment.motion
     tapping = experiment.mode == "approach-curve"
+    if tapping or getattr(motion, "steady", False):
+        refuse_steady_flow(contact)
     if tapping:
         drive, frequency = drive_of(
             experiment.cantilever, motion.free_amplitude, motion.drive_frequency
@@ -77,34 +93,28 @@ def regime(experiment: "Experiment") -> Table:
     radius = contact.contact_radius(lowest)
 
     table = _table(f"{experiment.mode}, before any run")
-    for when, tabor in (("fast", contact.tabor_instantaneous), ("slow", contact.tabor_relaxed)):
-        table.add_row(f"Tabor number, {when}", f"{tabor:.3g}", _tabor_in_words(tabor))
-    for when, length in (
-        ("fast", contact.cohesive_length_instantaneous),
-        ("slow", contact.cohesive_length),
-    ):
-        table.add_row(f"cohesive length, {when}", readable(length, "m"), "tension zone at the edge")
-    work = readable(contact.surface.work_of_adhesion, "J/m²")
-    table.add_row("work of adhesion", work, "per area, to part the surfaces")
+    _add_tip(table, contact)
+    _add_adhesion(table, contact)
     carried = experiment.cantilever is not None and not tapping
     where = "above the undeformed surface" + (", lever unbent" if carried else "")
     where = "of a tap: Hertz against the drive" if tapping else where
     table.add_row("lowest tip height", readable(lowest, "m"), where)
-    jkr = "JKR, slow, at the lowest height" if radius else "none is expected to last"
-    table.add_row("contact radius", readable(radius, "m"), jkr)
+    theory = "JKR" if contact.adhesive else "without adhesion"
+    expected = f"{theory}, {_slow(contact)}, at the lowest height"
+    words = expected if radius else "none is expected to last"
+    table.add_row("contact radius", readable(radius, "m"), words)
     if carried:
         _add_lever(table, experiment, radius)
     if tapping:
         _add_drive(table, experiment, drive)
     whole = "tap" if tapping else "motion"
     table.add_row(f"time of the {whole}", readable(last - first, "s"), "")
-    for creep_time in map(float, contact.sample.reduced_compliance.retardation_times):
-        words = _creep_in_words(creep_time / (last - first), whole)
-        table.add_row("creep time", readable(creep_time, "s"), words)
+    _add_sample(table, contact, last - first, whole)
     solver: Any = Energy() if experiment.solver is None else experiment.solver
     if solver.adaptive:
         crossed = cohesive_lengths_crossed(contact, motion)
         reason = f"the edge crosses at most {crossed:.2g} cohesive lengths"
+        reason = reason if contact.adhesive else "no tension zone to resolve"
     else:
         reason = f"{solver.steps} steps of {solver.nodes} nodes"
     runs = _TAPS if tapping else 1
@@ -114,17 +124,89 @@ def regime(experiment: "Experiment") -> Table:
     return table
 
 
+def _add_tip(table: Table, contact: "Contact") -> None:
+    """Tell the radius that counts."""
+    name, words = "effective radius", f"of the {contact.tip.kind}, where it is one reach high"
+    if isinstance(contact.tip, Paraboloid):
+        name, words = "tip radius", contact.tip.kind
+    table.add_row(name, readable(contact.effective_radius, "m"), words)
+
+
+def _add_adhesion(table: Table, contact: "Contact") -> None:
+    """Tell how soft the contact is for its adhesion, and how wide the tension zone."""
+    law = contact.surface
+    work = readable(law.work_of_adhesion, "J/m²")
+    if not contact.adhesive:
+        table.add_row("work of adhesion", work, f"{law.kind}: no adhesion")
+        return
+    for when, tabor in (("fast", contact.tabor_instantaneous), ("slow", contact.tabor_relaxed)):
+        value = f"{tabor:.3g}" if isfinite(tabor) else _FLOWS
+        table.add_row(f"Tabor number, {when}", value, _tabor_in_words(tabor))
+    for when, length in (
+        ("fast", contact.cohesive_length_instantaneous),
+        ("slow", contact.cohesive_length),
+    ):
+        value = readable(length, "m") if length else _FLOWS
+        table.add_row(f"cohesive length, {when}", value, "tension zone at the edge")
+    table.add_row("work of adhesion", work, f"{law.kind}: per area, to part the surfaces")
+
+
+def _add_sample(table: Table, contact: "Contact", duration: float, whole: str) -> None:
+    """Tell how much the sample softens in the motion (s), and how."""
+    sample = contact.sample
+    creep = sample.reduced_compliance
+    times = creep.retardation_times
+    fast, late = (readable(1 / float(sample.creep_compliance(t)), "Pa") for t in (0, duration))
+    softer = f"; {late} after the {whole}" if times.size or creep.fluidity else ""
+    table.add_row("Young's modulus", fast, sample.kind + softer)
+    if isinstance(sample, Represented):
+        ends = " to ".join(readable(time, "s") for time in sample.window)
+        words = f"to {100 * sample.represented_error:.2g} %, from {ends}"
+        if duration > sample.window[1]:
+            words += f"; the {whole} outlasts it: enlarge the window"
+        elif duration < sample.window[0]:
+            words += f"; the {whole} ends before: shift the window"
+        table.add_row("represented by", _modes(sample.mode_count), words)
+    elif times.size > _FEW:
+        share = float(creep.modes @ -np.expm1(-duration / times) / creep.modes.sum())
+        ends = f"{readable(times.min(), 's')} to {readable(times.max(), 's')}"
+        words = f"{ends}; {share:.2g} of their creep in the {whole}"
+        table.add_row("creep times", _modes(times.size), words)
+    else:
+        for time in map(float, times):
+            words = _creep_in_words(time / duration, whole)
+            table.add_row("creep time", readable(time, "s"), words)
+    if creep.fluidity:
+        viscosity = (1 - sample.poisson**2) / creep.fluidity
+        shear = viscosity / (2 * (1 + sample.poisson))
+        words = f"in tension, {readable(shear, 'Pa')} s in shear; flow without end"
+        words = "of the modes, beyond the window" if isinstance(sample, Represented) else words
+        table.add_row("viscosity", f"{readable(viscosity, 'Pa')} s", words)
+
+
+def _modes(count: int) -> str:
+    return "1 mode" if count == 1 else f"{count} modes"
+
+
+def _slow(contact: "Contact") -> str:
+    """Tell which modulus stands for the long run."""
+    if contact.sample.reduced_compliance.fluidity:
+        return f"at {readable(contact.softened_modulus, 'Pa')} as flow sets in"
+    return "slow"
+
+
 def _add_lever(table: Table, experiment: "Experiment", radius: float) -> None:
     """Compare the lever with what pulls it in and with what it presses on."""
     contact, lever = experiment.contact, experiment.cantilever.stiffness
     table.add_row("lever stiffness", readable(lever, "N/m"), "")
     attraction = contact.steepest_attraction
     words = "softer, the lever snaps in" if lever < attraction else "the lever is stiffer"
+    words = words if contact.surface.attracts else "the law only repels"
     table.add_row("steepest attraction", readable(attraction, "N/m"), f"undeformed; {words}")
     if radius:
-        stiffness = 2 * radius / contact.sample.reduced_compliance.relaxed
+        stiffness = 2 * radius * contact.softened_modulus
         share = stiffness / (stiffness + lever)
-        words = f"2·E·a, slow; lever bends by {share:.0%} of the way"
+        words = f"2·E·a, {_slow(contact)}; lever bends by {share:.0%} of the way"
         table.add_row("contact stiffness", readable(stiffness, "N/m"), words)
 
 

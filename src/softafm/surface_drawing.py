@@ -1,6 +1,7 @@
 """Figures of surface laws: pressure and potential against the gap."""
 
 from collections.abc import Sequence
+from math import ceil
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -59,7 +60,7 @@ def plot_surface(
     draw_laws(axes[0], axes[1], drawn, names, largest_gap)
     if len(drawn) > 1:
         entries = axes[0].get_legend_handles_labels()
-        columns = min(len(drawn), 5)
+        columns = ceil(len(drawn) / ceil(len(drawn) / 5))
         figure.legend(*entries, loc="outside lower center", ncols=columns, frameon=False)
     return figure
 
@@ -119,7 +120,7 @@ def _draw(ax: "Axes", gap, curves, names, depths, title: tuple[str, str]) -> Non
     for index, (curve, name) in enumerate(zip(curves, names, strict=True)):
         ax.plot(x_scale * gap, y_scale * curve, label=name, **line_of(index))
     if depth > 0:
-        ax.set_ylim(-1.25 * y_scale * depth, 0.75 * y_scale * depth)
+        ax.set_ylim(-1.35 * y_scale * depth, 0.75 * y_scale * depth)
     ax.set_xlim(x_scale * gap[0], x_scale * gap[-1])
     ax.set_xlabel(label_of("Gap", "m", x_scale), fontsize=11)
     ax.set_ylabel(label_of(*title, y_scale), fontsize=11)

@@ -15,6 +15,8 @@ if TYPE_CHECKING:
 _POINTS = 600
 _APEX = 1e-4
 """Radius, in extents, at which the curvature of the apex is judged."""
+_LOWEST, _HIGHEST = 0.5, 1.2
+"""Bounds of the height that is shown, in extents."""
 _RADII = np.geomspace(1e-10, 1e-3, 1401)
 _STEEP, _BEYOND = 0.9, 1.25
 """Slope to which a tip is drawn, in slopes of its far flank or of 45°, and how far beyond."""
@@ -65,10 +67,10 @@ def draw_profiles(ax: "Axes", tips: Sequence[Tip], extent: float, names: Sequenc
     r = np.linspace(-extent, extent, 2 * _POINTS + 1)
     scale = factor_of(r)
     fitted = set()
-    top = 0.0
+    top = _LOWEST * extent
     for index, (tip, name) in enumerate(zip(tips, names, strict=True)):
         height = tip.profile(np.abs(r))
-        top = max(top, min(float(height[-1]), 1.2 * extent))
+        top = max(top, min(float(height[-1]), _HIGHEST * extent))
         ax.plot(scale * r, scale * height, label=name, **line_of(index))
         radius = apex_radius(tip, extent)
         if radius is not None and float(f"{radius:.3g}") not in fitted:
@@ -80,9 +82,9 @@ def draw_profiles(ax: "Axes", tips: Sequence[Tip], extent: float, names: Sequenc
     ax.set_ylim(-0.05 * scale * top, 1.05 * scale * top)
     ax.set_aspect("equal")
     ax.set_xlabel(label_of("Radius", "m", scale), fontsize=11)
-    ax.set_ylabel(label_of("Height above the apex", "m", scale), fontsize=11)
+    ax.set_ylabel(label_of("Height", "m", scale), fontsize=11)
     tidy(ax)
-    ax.legend(frameon=False, fontsize=9)
+    ax.legend(frameon=False, fontsize=9, loc="upper center")
 
 
 def extent_of(tips: Sequence[Tip]) -> float:

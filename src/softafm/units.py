@@ -64,10 +64,10 @@ def _si_factor(unit: str, kind: Kind) -> Decimal:
     try:
         parsed = registry.parse_units(unit)
         factor, root = registry.get_root_units(parsed)
-        shifted = not registry.Quantity(1, parsed)._is_multiplicative
+        at_zero = registry.Quantity(0.0, parsed).to_root_units().magnitude
     except Exception:  # pint raises some ten unrelated types for text it cannot read
         raise ValueError(f"must be {kind.valid}; '{unit}' is not a known unit") from None
-    if shifted:
+    if at_zero:
         raise ValueError(
             f"must be {kind.valid}; '{unit}' does not count from zero, '{kind.si}' does"
         )

@@ -1,7 +1,10 @@
 """What all modes begin with: checks, and a run of the solver."""
 
+import warnings
+
 from softafm._validate import tolerance_of
 from softafm.cantilever import Cantilever
+from softafm.errors import AccuracyWarning
 from softafm.progress import reporting
 from softafm.solvers.energy import Energy
 
@@ -17,11 +20,29 @@ def carry(contact, motion, solver, tolerance, profiles, progress, **options):
     if getattr(motion, "steady", False):
         refuse_steady_flow(contact)
     refuse_unable(solver, motion)
+    warn_outside_window(contact, motion)
     with reporting(progress) as report:
         history = solver.solve(
             contact, motion, tolerance=tolerance, profiles=profiles, progress=report, **options
         )
     return solver, tolerance, history
+
+
+def warn_outside_window(contact, motion) -> None:
+    """Warn, on behalf of a mode that called ``carry``, of a motion longer than a sample's window.
+
+    Such a sample has a ``window``, the times (s) over which a chain represents it.
+    """
+    shortest, longest = getattr(contact.sample, "window", (0.0, float("inf")))
+    duration = float(motion.breaks[-1] - motion.breaks[0])
+    if duration > longest:
+        warnings.warn(
+            f"the motion lasts {duration:.3g} s, but the sample '{contact.sample.kind}' is "
+            f"represented over window = ({shortest:g}, {longest:g}) s only: what it remembers for "
+            f"longer is wrong; enlarge the window to {duration:.3g} s",
+            AccuracyWarning,
+            stacklevel=4,  # the caller of the mode
+        )
 
 
 def refuse_other_than_cantilever(cantilever) -> None:

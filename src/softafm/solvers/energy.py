@@ -92,6 +92,17 @@ class Energy:
 
 
 def cohesive_lengths_crossed(contact, motion) -> float:
-    """Return how many cohesive lengths the contact edge crosses at most, in and out each cycle."""
-    radius = contact.contact_radius(lowest_height(motion))
-    return 2 * radius / contact.cohesive_length * getattr(motion, "periods", 1)
+    """Return how many cohesive lengths the contact edge crosses at most, in and out each cycle.
+
+    None without adhesion. The modulus is what the motion leaves of it, the softened one at
+    least, and that in a steady motion.
+    """
+    if not contact.adhesive:
+        return 0.0
+    law, radius = contact.surface, contact.contact_radius(lowest_height(motion))
+    modulus = contact.softened_modulus
+    if not getattr(motion, "steady", False):
+        duration = float(motion.breaks[-1] - motion.breaks[0])
+        modulus = max(modulus, 1 / float(contact.sample.reduced_compliance.at(duration)))
+    length = modulus * law.range**2 / law.work_of_adhesion
+    return 2 * radius / length * getattr(motion, "periods", 1)
