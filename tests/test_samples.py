@@ -25,7 +25,7 @@ def test_samples_of_the_paper_are_its_tables():
 @pytest.mark.parametrize(("ratio", "modulus"), [(10, 2e6), (5, 4e6), (33, 20e6 / 33)])
 def test_pdms_softens_with_its_mixing_ratio(ratio, modulus):
     """E = 20 MPa/ratio: Wang, Volinsky and Gallant 2014."""
-    assert samples.pdms(ratio) == sa.Elastic(pytest.approx(modulus), 0.5)
+    assert samples.pdms(ratio) == sa.Elastic(modulus, 0.5)
 
 
 def test_pdms_of_ratio_ten_lies_in_the_measured_range():

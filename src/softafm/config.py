@@ -218,6 +218,7 @@ def _experiment(document: Mapping[str, Any], folder: Path) -> Experiment:
     if problems:
         raise ConfigError(problems)
     contact = Contact(tip=built["tip"], sample=built["sample"], surface=built["surface"])
+    _refuse_flow(contact, mode, built["motion"], document["motion"])
     if mode != "approach-curve":
         _refuse_motion(contact, built["motion"], solver, document["motion"])
     return Experiment(
@@ -230,6 +231,27 @@ def _experiment(document: Mapping[str, Any], folder: Path) -> Experiment:
         profiles=run.profiles,
         document=document,
     )
+
+
+def _refuse_flow(contact: Contact, mode: Any, motion: Any, written: dict) -> None:
+    """Raise ConfigError if cycles are to be steady on a sample that flows."""
+    if contact.sample.reduced_compliance.fluidity == 0:
+        return
+    if mode == "approach-curve":
+        raise ConfigError(
+            [
+                f"mode = '{mode}': of no use with a sample that flows, '{contact.sample.kind}', as "
+                "the tip sinks deeper with every cycle"
+            ]
+        )
+    if getattr(motion, "steady", False):
+        given = "'steady'" if "cycles" in written else "missing"
+        raise ConfigError(
+            [
+                f"motion.cycles: {given}; must be a number, as the sample '{contact.sample.kind}' "
+                "flows and the tip sinks deeper with every cycle"
+            ]
+        )
 
 
 def _refuse_motion(contact: Contact, motion: Any, solver: Any, written: dict) -> None:

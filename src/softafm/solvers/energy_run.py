@@ -296,19 +296,21 @@ class Run:
         if coarseness <= 1.3 * self.target:
             return ()
         spacing = self.surface.mesh.edge_spacing * edge
-        # Seen through coarse nodes the zone looks wide; the relaxed cohesive length bounds it.
-        wide = max(coarseness, 2 * spacing / self.contact.cohesive_length) / self.target
-        law = self.contact.surface
-        remedy = (
-            f"or enlarge z0 at fixed work of adhesion, LennardJones.from_work_of_adhesion(W="
-            f"{law.work_of_adhesion:.4g}, z0={sqrt(wide) * law.range:.2g})"
-        )
+        law, remedy = self.contact.surface, ""
+        if self.contact.adhesive:
+            # Seen through coarse nodes the zone looks wide; the softened cohesive length bounds it.
+            length = self.contact.softened_modulus * law.range**2 / law.work_of_adhesion
+            wide = max(coarseness, 2 * spacing / length) / self.target
+            remedy = (
+                f", or enlarge z0 at fixed work of adhesion, LennardJones.from_work_of_adhesion(W="
+                f"{law.work_of_adhesion:.4g}, z0={sqrt(wide) * law.range:.2g})"
+            )
         return (
             f"the cohesive zone at the contact edge, {spacing / coarseness:.2g} m wide, is "
             f"resolved by nodes {spacing:.2g} m apart (finest_spacing = "
             f"{self.solver.finest_spacing:g} contact radii) where "
             f"{self.target * spacing / coarseness:.2g} m is needed: forces and above all the loop "
-            f"energy may be wrong. Lower solvers.Energy(finest_spacing=...), {remedy}",
+            f"energy may be wrong. Lower solvers.Energy(finest_spacing=...){remedy}",
         )
 
     def _too_sharp(self) -> tuple[str, ...]:

@@ -7,6 +7,8 @@ import numpy as np
 
 _POINTS, _WEIGHTS = np.polynomial.legendre.leggauss(4)
 _MOST_UNEVEN = 4.0
+_LONGEST = 10.0
+"""How many times as long as one beside it an interval may be for a cubic to cross it."""
 
 
 @dataclass(frozen=True)
@@ -105,10 +107,11 @@ def cubics(time, at):
     """Instants near ``at`` (m, points), each row within one interval of ``time`` (n,).
 
     Returns their indices (m, 4) and the values (m, points, 4) of Lagrange's polynomials through
-    them, of four instants, or all if there are fewer.
+    them, of four instants, or all if there are fewer; of two where intervals are very uneven.
     """
     count = min(4, time.size)
-    first = np.clip(np.searchsorted(time, at.mean(axis=1)) - 2, 0, time.size - count)
+    right = np.searchsorted(time, at.mean(axis=1))
+    first = np.clip(right - 2, 0, time.size - count)
     near = first[:, None] + np.arange(count)
     offsets = at[:, :, None] - time[near][:, None, :]
     basis = np.ones(offsets.shape)
@@ -117,4 +120,11 @@ def cubics(time, at):
             if other != j:
                 apart = time[near[:, j]] - time[near[:, other]]
                 basis[:, :, j] *= offsets[:, :, other] / apart[:, None]
+    # A cubic runs wild across an interval that is much longer than one beside it: a line does not.
+    length = time[right] - time[right - 1]
+    for row in np.flatnonzero(length > _LONGEST * np.diff(time[near]).min(axis=1)):
+        part = (at[row] - time[right[row] - 1]) / length[row]
+        basis[row] = 0
+        basis[row, :, right[row] - 1 - first[row]] = 1 - part
+        basis[row, :, right[row] - first[row]] = part
     return near, basis
