@@ -386,11 +386,22 @@ def test_every_choice_is_what_python_builds(load, table, choice, keys, thing):
     for name, content in FILES.items():
         (load.folder / name).write_text(content)
     chooser, _ = schema.CHOICES[table]
-    written = getattr(load({**TAP, table: {chooser: choice, **keys}}).contact, table)
+    document = {**TAP, table: {chooser: choice, **keys}}
+    written = getattr(load(document, "motion.cycles=1").contact, table)
     if thing is None:
         brush, attraction = surfaces.Repulsion(1e8, 0.5 * NM), surfaces.VanDerWaalsAttraction(1e-20)
         thing = brush + attraction + read_law(load.folder / "law.csv")
     assert same(written, thing)
+
+
+def test_no_cycle_is_steady_on_a_sample_that_flows(load):
+    fluid = {"model": "maxwell", "E0": "1 GPa", "relaxation_time": "1 ms", "poisson": 0.5}
+    flowing, sweeping = {**TAP, "sample": fluid}, {**SWEEP, "sample": fluid}
+    assert load(flowing, "motion.cycles=3").motion.cycles == 3
+    assert refusal(load, flowing).startswith("motion.cycles: missing; must be a number, as the")
+    line = refusal(load, flowing, "motion.cycles=steady")
+    assert line.startswith("motion.cycles: 'steady'; must be a number, as the sample 'maxwell'")
+    assert refusal(load, sweeping).startswith("mode = 'approach-curve': of no use, as the sample")
 
 
 def test_every_choice_is_among_those_built():
@@ -580,7 +591,8 @@ def test_running_an_approach_curve_is_calling_the_function(load):
 
 
 def test_bundled_examples_load_and_say_what_they_are(load):
-    assert {"ldpe-spectroscopy", "ldpe-tapping", "ps-approach-curve"} <= set(example_names())
+    named = {"ldpe-spectroscopy", "ldpe-tapping", "ps-approach-curve"}
+    assert named | {"pdms-sphere", "epoxy-tapping"} <= set(example_names())
     for name in example_names():
         text = example_text(name)
         assert text.startswith("# ")
@@ -620,6 +632,31 @@ def test_spectroscopy_example_is_the_papers_wave_and_the_reference_case(load):
     assert float(result["force_max"]) == pytest.approx(5.2246e-9, rel=0.01)
     assert float(result["force_min"]) == pytest.approx(-1.57152e-9, rel=0.01)
     assert float(result["loop_energy"]) == pytest.approx(1.07619e-18, rel=0.01)
+
+
+def test_pdms_example_is_torn_off_as_in_jkr_theory(load):
+    experiment = load(example_text("pdms-sphere"))
+    contact = experiment.contact
+    assert contact.sample == samples.pdms()
+    assert 5 < contact.tabor_relaxed < 10
+    result = experiment.run()
+    assert float(result["force_max"]) == pytest.approx(0.5e-6, rel=0.01)
+    assert float(result["force_min"]) == pytest.approx(-1.5 * math.pi * 0.05 * 5e-6, rel=0.03)
+    assert result.sizes["jump"] == 2
+    real = {"law": "lennard-jones", "work_of_adhesion": "50 mJ/m^2", "z0": "0.3 nm"}
+    override = f"surface={{{', '.join(f'{k}={v!r}' for k, v in real.items())}}}"
+    named = load(example_text("pdms-sphere"), override).contact
+    assert named.tabor_relaxed == pytest.approx(400, rel=0.02)
+
+
+def test_epoxy_example_softens_at_a_lower_frequency(load):
+    fast = load(example_text("epoxy-tapping")).run()
+    slow = load(example_text("epoxy-tapping"), "motion.frequency=300 Hz").run()
+    assert 0.7 < float(slow["force_max"] / fast["force_max"]) < 0.9
+    for tap in (fast, slow):
+        assert float(tap["dissipation"]) == pytest.approx(float(tap["viscous_loss"]), rel=0.01)
+    melt = load(example_text("epoxy-tapping"), "sample={model='polyisobutylene'}").contact.sample
+    assert melt == samples.polyisobutylene()
 
 
 def test_unknown_example():
@@ -1228,7 +1265,7 @@ def test_garbage_in_tips_samples_and_surfaces(load, built, value):
     for name, content in FILES.items():
         (load.folder / name).write_text(content)
     chooser, _ = schema.CHOICES[table]
-    document = {**TAP, table: {chooser: choice, **keys, key: value}}
+    document = {**CURVE, table: {chooser: choice, **keys, key: value}}
     with contextlib.suppress(ConfigError):
         load(document)
         return

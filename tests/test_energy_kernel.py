@@ -23,9 +23,7 @@ seeds = st.integers(0, 2**32 - 1)
 
 def carried(values, old, new, stretch=1.0):
     out = np.empty((1, new.nodes.size))
-    k.transfer(
-        values[None], old.nodes[-1], old.edge_spacing, old.growth, stretch, new.nodes, out
-    )
+    k.transfer(values[None], old.nodes[-1], old.edge_spacing, old.growth, stretch, new.nodes, out)
     return out[0]
 
 

@@ -14,8 +14,10 @@ W, Z0, R = 0.05, 3e-10, 20e-9
 def morse(gap, work, z0, decay):
     far = np.exp(-(gap - z0) / decay)
     near = far * far
-    return 2 * work / decay * (near - far), 2 * work / decay**2 * (far - 2 * near), work * (
-        near - 2 * far
+    return (
+        2 * work / decay * (near - far),
+        2 * work / decay**2 * (far - 2 * near),
+        work * (near - 2 * far),
     )
 
 

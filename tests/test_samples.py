@@ -2,9 +2,10 @@
 
 import numpy as np
 import pytest
+from scipy.integrate import trapezoid
 
 import softafm as sa
-from softafm import samples
+from softafm import samples, surfaces
 
 EVERY = [build() for build in samples.NAMED.values()]
 
@@ -75,6 +76,22 @@ def test_named_samples_run(sample):
     curve = sa.force_distance(contact, sa.Triangle(start=10e-9, turn=-2e-9, speed=1e-3))
     assert float(curve.force_min) < 0
     assert float(curve.loop_energy) > -1e-3 * 2e-9 * float(np.abs(curve.force).max())
+
+
+@pytest.mark.parametrize(
+    "surface",
+    [surfaces.Morse(0.04, 0.3e-9, 0.5e-9), sa.LennardJones.from_work_of_adhesion(0.04, 0.3e-9)],
+    ids=["morse", "lennard-jones"],
+)
+def test_a_melt_that_snaps_in_within_picoseconds_has_a_finite_energy(surface):
+    """Energies were integrals of cubics, which ran wild before the surface's fast creep."""
+    contact = sa.Contact(sa.Paraboloid(10e-9), samples.polyisobutylene(), surface)
+    tap = sa.tapping_cycle(contact, amplitude=50e-9, mean_height=45e-9, frequency=300e3, cycles=1)
+    work = -trapezoid(tap.force, tap.tip_height)
+    assert float(tap.dissipation) == pytest.approx(work, rel=0.05)
+    lost = float(tap.viscous_loss + tap.jump_energy.sum())
+    assert float(tap.dissipation) == pytest.approx(lost, rel=0.03)
+    assert float(tap.force.min()) < float(tap.force_mean.squeeze()) < float(tap.force.max())
 
 
 @pytest.mark.parametrize(

@@ -240,7 +240,7 @@ def _refuse_flow(contact: Contact, mode: Any, motion: Any, written: dict) -> Non
     if mode == "approach-curve":
         raise ConfigError(
             [
-                f"mode = '{mode}': of no use with a sample that flows, '{contact.sample.kind}', as "
+                f"mode = '{mode}': of no use, as the sample '{contact.sample.kind}' flows and "
                 "the tip sinks deeper with every cycle"
             ]
         )

@@ -7,7 +7,6 @@ import numpy as np
 from rich.table import Table
 
 from softafm.modes.approach import deepest_tap, drive_of
-from softafm.modes.start import refuse_steady_flow
 from softafm.motions import lowest_height
 from softafm.rheology.represented import Represented
 from softafm.solvers.energy import Energy, cohesive_lengths_crossed
@@ -71,17 +70,9 @@ def _degrees(phase: np.ndarray) -> str:
 
 
 def regime(experiment: "Experiment") -> Table:
-    """Return a table of the numbers that say how a contact will behave and what it will cost.
-
-    Raises
-    ------
-    ValueError
-        If the motion is to become steady and the sample flows.
-    """
+    """Return a table of the numbers that say how a contact will behave and what it will cost."""
     contact, motion = experiment.contact, experiment.motion
     tapping = experiment.mode == "approach-curve"
-    if tapping or getattr(motion, "steady", False):
-        refuse_steady_flow(contact)
     if tapping:
         drive, frequency = drive_of(
             experiment.cantilever, motion.free_amplitude, motion.drive_frequency

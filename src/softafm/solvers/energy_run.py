@@ -318,8 +318,8 @@ class Run:
         if not self.contact.adhesive or law.sharpness <= _SHARPEST:
             return ()
         return (
-            f"the tension of the surface law '{law.kind}' ends {law.sharpness:.2g} times as sharply "
-            f"as that of a Lennard-Jones law of its range; beyond {_SHARPEST:g} times the contact "
+            f"the tension of the surface law '{law.kind}' ends {law.sharpness:.2g} times as sharply"
+            f" as that of a Lennard-Jones law of its range; beyond {_SHARPEST:g} times the contact "
             "edge may catch on the nodes, and forces be off by several per cent. Smooth the law",
         )
 

@@ -17,7 +17,7 @@ in s.
 Functions called once a step are inlined: to hand over so many arrays takes as long as their work.
 """
 
-from math import exp, pi
+from math import exp
 from typing import NamedTuple
 
 import numpy as np
@@ -61,9 +61,10 @@ class Setup(NamedTuple):
 
     ``influence`` (e, n) takes a pressure to q, m; ``shapes`` (N, n) are the functions at the nodes
     (unused at nodes), ``unity`` and ``profile_image`` (e,) the constant 1 and the tip profile where
-    the equations are posed, ``profile`` (n,) at the nodes. ``area`` (n,) holds 2πr dr. Beyond
-    the domain, where the surface counts as level with the last node, ``far_area`` (far,) does, and
-    ``far_rise`` is the height of the tip above that node. ``axis`` extrapolates to r = 0 from the first two nodes.
+    the equations are posed, ``profile`` (n,) at the nodes. ``area`` (n,) holds 2πr dr. Beyond the
+    domain, where the surface counts as level with the last node, ``far_area`` (far,) does, and
+    ``far_rise`` is the height of the tip above that node. ``axis`` extrapolates to r = 0 from the
+    first two nodes.
     """
 
     kind: int
@@ -144,8 +145,8 @@ CONTROLS = types.NamedTuple(
 )
 WORK = types.NamedTuple(
     (
-        _V, _V, _V, _V, _V, _V, _M, _M, _V, _V, _V, _V, _V, _M, _M, _M, _M, _CUBE, _M, _M, _M, _V, _V,
-        int64[::1],
+        _V, _V, _V, _V, _V, _V, _M, _M, _V, _V, _V, _V, _V, _M, _M, _M, _M, _CUBE, _M, _M, _M, _V,
+        _V, int64[::1],
     ),
     Work,
 )  # fmt: skip

@@ -19,7 +19,7 @@ _MOST_CYCLES = 100
 
 
 class Discretisation(NamedTuple):
-    """A surface as the compiled loop takes it, the coefficients of the flat one, and its radius."""
+    """A surface as the compiled loop takes it, coefficients of the flat one, and its radius, m."""
 
     setup: k.Setup
     flat: np.ndarray
@@ -47,7 +47,7 @@ def default_domain(contact, motion) -> float:
     """Radius of the computational domain, m: the largest contact expected and what acts around it.
 
     The contact is that of the relaxed JKR theory at the lowest tip height. Around it the domain
-    reaches to where the tip has risen by 12 reaches of the surface law, or thrice its lowest height.
+    reaches to where the tip has risen by 12 reaches of the surface law or thrice its lowest height.
     """
     lowest, tip = lowest_height(motion), contact.tip
     rise = max(12 * contact.reach, 3 * lowest)
@@ -301,7 +301,8 @@ def _workspace(
         "right": equations, "solution": equations, "scratch": nodes,
         "stiffened": (equations, nodes), "matrix": (unknowns, equations),
         "normal": (unknowns, unknowns), "trial": (rows, equations),
-        "far": (3, far), "stages": (4, rows, equations), "free": (rows, equations), "dragged": (rows, equations),
+        "far": (3, far), "stages": (4, rows, equations), "free": (rows, equations),
+        "dragged": (rows, equations),
         "tip": 2, "past_tip": rates,
     }  # fmt: skip
     arrays = {name: np.zeros(size) for name, size in sizes.items()}
