@@ -39,6 +39,8 @@ class UnitMesh(NamedTuple):
     """Radii beyond the last node, shape (far,)."""
     far_masses: np.ndarray
     """∫ f s ds from the last node to infinity = Σ far_masses·f(far), shape (far,)."""
+    drift: np.ndarray
+    """Of j(ξ) at the nodes the derivatives with ln ξ, over 1, 2, 6, 24: shape (4, n)."""
 
 
 def node_index(radius, edge_spacing: float, growth: float):
@@ -94,9 +96,26 @@ def unit_mesh(edge_spacing: float, growth: float, extent: float) -> UnitMesh:
     stiffness = np.linalg.inv(influence(nodes, spacing, masses))
     stiffness = (stiffness + stiffness.T) / 2
     far, far_masses = beyond(nodes[-1])
-    for array in (nodes, masses, stiffness, far, far_masses):
+    drift = _drift(nodes, edge_spacing, growth)
+    for array in (nodes, masses, stiffness, far, far_masses, drift):
         array.setflags(write=False)
-    return UnitMesh(nodes, masses, stiffness, edge_spacing, growth, far, far_masses)
+    return UnitMesh(nodes, masses, stiffness, edge_spacing, growth, far, far_masses, drift)
+
+
+def _drift(radius, edge_spacing: float, growth: float):
+    """Coefficients of t, t², t³, t⁴ in j(ξ eᵗ) − j(ξ)."""
+    first, second, third, fourth = np.zeros((4, radius.size))
+    for side in (radius - 1, radius + 1):
+        size = np.hypot(edge_spacing, growth * side)
+        bend = (growth * side / size) ** 2
+        first += 1 / size
+        second -= growth**2 * side / size**3
+        third += growth**2 * (3 * bend - 1) / size**3
+        fourth += growth**4 * side * (9 - 15 * bend) / size**5
+    d1, d2, d3, d4 = radius * first, radius**2 * second, radius**3 * third, radius**4 * fourth
+    return np.array(
+        [d1, (d1 + d2) / 2, (d1 + 3 * d2 + d3) / 6, (d1 + 7 * d2 + 6 * d3 + d4) / 24]
+    )
 
 
 def beyond(end: float) -> tuple[np.ndarray, np.ndarray]:

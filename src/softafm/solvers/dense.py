@@ -53,17 +53,44 @@ def factorise(matrix, n):
 
 @njit((_M, _V, int64), cache=True, fastmath=_FAST)
 def solve_factorised(factor, x, n):
-    """Overwrite ``x`` with (UᵀU)⁻¹ x."""
-    for i in range(n):
+    """Overwrite ``x`` with (UᵀU)⁻¹ x, four rows at a time."""
+    whole = n - n % 4
+    for i in range(0, whole, 4):
+        x0 = x[i] * factor[i, i]
+        x1 = (x[i + 1] - x0 * factor[i, i + 1]) * factor[i + 1, i + 1]
+        x2 = x[i + 2] - x0 * factor[i, i + 2] - x1 * factor[i + 1, i + 2]
+        x2 *= factor[i + 2, i + 2]
+        x3 = x[i + 3] - x0 * factor[i, i + 3] - x1 * factor[i + 1, i + 3]
+        x3 = (x3 - x2 * factor[i + 2, i + 3]) * factor[i + 3, i + 3]
+        x[i], x[i + 1], x[i + 2], x[i + 3] = x0, x1, x2, x3
+        for j in range(i + 4, n):
+            x[j] -= (
+                x0 * factor[i, j]
+                + x1 * factor[i + 1, j]
+                + x2 * factor[i + 2, j]
+                + x3 * factor[i + 3, j]
+            )
+    for i in range(whole, n):
         x[i] *= factor[i, i]
-        f = x[i]
         for j in range(i + 1, n):
-            x[j] -= f * factor[i, j]
-    for i in range(n - 1, -1, -1):
-        total = x[i]
+            x[j] -= x[i] * factor[i, j]
+    for i in range(n - 1, whole - 1, -1):
         for j in range(i + 1, n):
-            total -= factor[i, j] * x[j]
-        x[i] = total * factor[i, i]
+            x[i] -= factor[i, j] * x[j]
+        x[i] *= factor[i, i]
+    for i in range(whole - 4, -1, -4):
+        x0, x1, x2, x3 = x[i], x[i + 1], x[i + 2], x[i + 3]
+        for j in range(i + 4, n):
+            x0 -= factor[i, j] * x[j]
+            x1 -= factor[i + 1, j] * x[j]
+            x2 -= factor[i + 2, j] * x[j]
+            x3 -= factor[i + 3, j] * x[j]
+        x3 *= factor[i + 3, i + 3]
+        x2 = (x2 - factor[i + 2, i + 3] * x3) * factor[i + 2, i + 2]
+        x1 -= factor[i + 1, i + 2] * x2 + factor[i + 1, i + 3] * x3
+        x1 *= factor[i + 1, i + 1]
+        x0 -= factor[i, i + 1] * x1 + factor[i, i + 2] * x2 + factor[i, i + 3] * x3
+        x[i], x[i + 1], x[i + 2], x[i + 3] = x0 * factor[i, i], x1, x2, x3
 
 
 @njit((_CONST2, _V, _V), cache=True, fastmath=_FAST)

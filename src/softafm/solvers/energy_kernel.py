@@ -17,7 +17,7 @@ All of it stands in one file because numba's disk cache only notices changes of 
 function is in.
 """
 
-from math import asinh, exp, floor, pi
+from math import asinh, exp, floor, log, pi
 from typing import NamedTuple
 
 import numpy as np
@@ -74,6 +74,7 @@ class Mesh(NamedTuple):
     growth: float
     far: np.ndarray
     far_masses: np.ndarray
+    drift: np.ndarray
 
 
 class Parameters(NamedTuple):
@@ -133,10 +134,34 @@ class Controls(NamedTuple):
     trigger: float
 
 
-MESH = types.NamedTuple((_CONST, _CONST, _CONST2, float64, float64, _CONST, _CONST), Mesh)
+MESH = types.NamedTuple(
+    (_CONST, _CONST, _CONST2, float64, float64, _CONST, _CONST, _CONST2), Mesh
+)
 PARAMETERS = types.NamedUniTuple(_V, len(Parameters._fields), Parameters)
 BACKGROUND = types.NamedTuple((_M, float64, float64, float64, float64, float64), Background)
 CONTROLS = types.NamedUniTuple(float64, len(Controls._fields), Controls)
+
+
+@njit((_M, float64, int64, _M), cache=True, fastmath=_FAST, inline="always")
+def _interpolate(fields, x, i, out):
+    """Fields (m, n) at the fractional node index ``x``, into column i: six-point Lagrange, even."""
+    base = min(floor(x) - 2, fields.shape[1] - 6)
+    t0 = x - base
+    t1, t2, t3, t4, t5 = t0 - 1.0, t0 - 2.0, t0 - 3.0, t0 - 4.0, t0 - 5.0
+    w0, w1 = t1 * t2 * t3 * t4 * t5 / -120.0, t0 * t2 * t3 * t4 * t5 / 24.0
+    w2, w3 = t0 * t1 * t3 * t4 * t5 / -12.0, t0 * t1 * t2 * t4 * t5 / 12.0
+    w4, w5 = t0 * t1 * t2 * t3 * t5 / -24.0, t0 * t1 * t2 * t3 * t4 / 120.0
+    i0, i1, i2 = abs(base), abs(base + 1), abs(base + 2)
+    i3, i4, i5 = base + 3, base + 4, base + 5
+    for m in range(fields.shape[0]):
+        out[m, i] = (
+            w0 * fields[m, i0]
+            + w1 * fields[m, i1]
+            + w2 * fields[m, i2]
+            + w3 * fields[m, i3]
+            + w4 * fields[m, i4]
+            + w5 * fields[m, i5]
+        )
 
 
 @njit((_M, float64, float64, float64, float64, _CONST, _M), cache=True, fastmath=_FAST)
@@ -144,8 +169,8 @@ def transfer(fields, end, edge_spacing, growth, stretch, nodes, out):
     """Evaluate displacement fields of one mesh at radii ``stretch``·``nodes`` of another.
 
     ``fields`` (m, n) live on a mesh of this ``edge_spacing`` and ``growth`` whose last node is
-    ``end``. Six-point Lagrange interpolation in the node index, even about the axis; beyond the
-    last node the field of a concentrated load, 1/r.
+    ``end``. They are smooth and even in the node index; beyond the last node they are those of a
+    concentrated load, 1/r.
     """
     scale = growth / edge_spacing
     rows, n = fields.shape
@@ -156,33 +181,32 @@ def transfer(fields, end, edge_spacing, growth, stretch, nodes, out):
                 out[m, i] = fields[m, n - 1] * end / r
             continue
         x = (asinh(scale * (r - 1.0)) + asinh(scale * (r + 1.0))) / growth
-        base = min(floor(x) - 2, n - 6)
-        t0 = x - base
-        t1, t2, t3, t4, t5 = t0 - 1.0, t0 - 2.0, t0 - 3.0, t0 - 4.0, t0 - 5.0
-        w0, w1 = t1 * t2 * t3 * t4 * t5 / -120.0, t0 * t2 * t3 * t4 * t5 / 24.0
-        w2, w3 = t0 * t1 * t3 * t4 * t5 / -12.0, t0 * t1 * t2 * t4 * t5 / 12.0
-        w4, w5 = t0 * t1 * t2 * t3 * t5 / -24.0, t0 * t1 * t2 * t3 * t4 / 120.0
-        i0, i1, i2 = abs(base), abs(base + 1), abs(base + 2)
-        i3, i4, i5 = base + 3, base + 4, base + 5
-        for m in range(rows):
-            out[m, i] = (
-                w0 * fields[m, i0]
-                + w1 * fields[m, i1]
-                + w2 * fields[m, i2]
-                + w3 * fields[m, i3]
-                + w4 * fields[m, i4]
-                + w5 * fields[m, i5]
-            )
+        _interpolate(fields, x, i, out)
 
 
-@njit((_M, MESH, float64, _M), cache=True)
+@njit((_M, MESH, float64, _M), cache=True, fastmath=_FAST)
 def reframe(fields, mesh, stretch, out):
-    """Fields (m, n) in a frame ``stretch`` times larger, on the same mesh."""
+    """Fields (m, n) in a frame ``stretch`` times larger, on the same mesh.
+
+    If that shifts the nodes by less than one, the index comes from the series of its map.
+    """
     if abs(stretch - 1.0) < 1e-12:
         out[:] = fields
-    else:
-        end = mesh.nodes[mesh.nodes.size - 1]
+        return
+    rows, n = fields.shape
+    t = log(stretch)
+    if abs(t) > 0.5 * mesh.edge_spacing:
+        end = mesh.nodes[n - 1]
         transfer(fields, end, mesh.edge_spacing, mesh.growth, stretch, mesh.nodes, out)
+        return
+    drift, last = mesh.drift, n - 1.0
+    for i in range(n):
+        x = i + t * (drift[0, i] + t * (drift[1, i] + t * (drift[2, i] + t * drift[3, i])))
+        if x > last:
+            for m in range(rows):
+                out[m, i] = fields[m, n - 1] * mesh.nodes[n - 1] / (mesh.nodes[i] * stretch)
+        else:
+            _interpolate(fields, x, i, out)
 
 
 @njit(float64(_V, _CONST, float64), cache=True)
@@ -205,9 +229,10 @@ def _assemble(mesh, scale, slope, shift, lever, hessian):
     """
     n = mesh.nodes.size
     total = lever
+    stiffness = mesh.stiffness
     for i in range(n):
-        for j in range(i, n):
-            hessian[i, j] = mesh.stiffness[i, j] * scale
+        for j in range(n):
+            hessian[i, j] = stiffness[i, j] * scale
         curvature = mesh.masses[i] * slope[i]
         hessian[i, i] += mesh.masses[i] * shift - curvature
         hessian[i, n] = curvature
@@ -256,14 +281,17 @@ def equilibrate(
     n = standoff.size
     size = n + 1 if lever > 0.0 else n
     gap, pressure, slope, change = work[0, :n], work[1, :n], work[2, :n], work[3]
+    latest = work[4, :n]
     scale = 1.0 / ac
     for i in range(n):
         gap[i] = standoff[i] + u[n] - u[i]
         if not gap[i] > smallest_gap:
             return -1
-    previous = 0.5
+    previous, reuse = 0.5, False
     for iteration in range(1, 9):
-        law(gap, parameters, pressure, slope, n)
+        law(gap, parameters, pressure, latest, n)
+        if not reuse:
+            slope[:] = latest
         for i in range(n):
             u[i] -= v[i]
         multiply(mesh.stiffness, u[:n], change[:n])
@@ -278,9 +306,10 @@ def equilibrate(
             tail, draw = beyond_mesh(gap[n - 1], rise, mesh, law, parameters, far_work)
             change[n] += tail - lever * (u[n] - rest)
             border += draw
-        _assemble(mesh, scale, slope, 0.0, border, hessian)
-        if not factorise(hessian, size):
-            return -iteration
+        if not reuse:
+            _assemble(mesh, scale, slope, 0.0, border, hessian)
+            if not factorise(hessian, size):
+                return -iteration
         solve_factorised(hessian, change, size)
         if size == n:
             change[n] = 0.0
@@ -289,6 +318,7 @@ def equilibrate(
             largest = max(largest, abs(change[i] - change[n]) / gap[i])
         if not largest < previous:
             return -iteration
+        reuse = largest < 0.02 and not reuse  # so near, the same factors serve once more
         u[n] += change[n]
         for i in range(n):
             u[i] += change[i]
@@ -565,7 +595,7 @@ def advance(
     compliance, retardation = parameters.compliance, parameters.retardation
     modes = retardation.size
     hessian = np.empty((n + 1, n + 1))
-    newton_work = np.empty((4, n + 1))
+    newton_work = np.empty((5, n + 1))
     far_work = np.empty((3, mesh.far.size))
     rise = np.empty(mesh.far.size)
     gap, pressure = newton_work[0, :n], newton_work[1, :n]
