@@ -6,7 +6,7 @@ READY := $(VENV)/.installed-for-development
 
 export NO_MKDOCS_2_WARNING := 1
 
-.PHONY: demo test lint docs bench paper clean
+.PHONY: demo test lint docs bench bench-all paper clean
 
 demo: $(READY)
 	$(BIN)/python examples/demo.py
@@ -25,7 +25,10 @@ docs: $(READY)
 	@echo "Open site/index.html"
 
 bench: $(READY)
-	@set -e; for script in benchmarks/*.py; do \
+	$(BIN)/python benchmarks/table.py
+
+bench-all: $(READY)
+	@set -e; for script in $(filter-out benchmarks/common.py,$(wildcard benchmarks/*.py)); do \
 		echo "== $$script"; $(BIN)/python $$script; \
 	done
 

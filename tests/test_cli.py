@@ -44,6 +44,12 @@ def softafm(capsys):
     return softafm
 
 
+@pytest.fixture
+def wide(monkeypatch):
+    """A terminal in which no row of a table is broken."""
+    monkeypatch.setenv("COLUMNS", "250")
+
+
 def names(folder):
     return sorted(path.name for path in folder.iterdir())
 
@@ -83,6 +89,50 @@ def test_run_takes_overrides_and_options(folder, softafm):
     assert result.attrs["tolerance"] == 0.05
     assert '"E0": 4000000000.0' in result.attrs["experiment"]
     assert "gap" in result
+
+
+def test_a_check_is_shown_with_the_observables(folder, softafm, wide):
+    code, out, err = softafm("run", "ldpe-tapping.toml", "--check")
+    assert (code, err) == (0, "")
+    assert re.search(r"virial +-34\.\d+ aJ.*; check [+-]0\.\d+ %", out)
+    assert re.search(r"check +[+-]0\.\d+ % +largest difference from a run at tolerance 0\.001", out)
+    found = json.loads(sa.load(folder / "ldpe-tapping.nc").attrs["check_differences"])
+    assert "virial" in found
+    assert "cycles_run" not in found
+
+
+def test_a_check_that_finds_something_warns(folder, softafm, wide):
+    code, out, err = softafm(
+        *("run", "attard-triangle.toml", "--solver", "attard", "--set", "solver.method=explicit"),
+        *("--set", "solver.steps=1000", "--set", "solver.nodes=4", "--check"),
+        *("--set", "solver.stepper=runge-kutta-4", "--set", "surface.hamaker=1e-21 J"),
+    )
+    assert code == 0
+    assert err.startswith("softafm: warning: ")
+    assert err.endswith("run with steps = 2000, nodes = 8, or finer\n")
+    assert "from a run with twice the steps and nodes" in out
+
+
+def test_a_soft_contact_is_advised_on_regularised_and_shown(folder, softafm, wide):
+    softafm("example", "pdms-sphere")
+    short = ("pdms-sphere.toml", "--set", "surface.z0=0.3nm")
+    _, out, _ = softafm("info", *short)
+    assert re.search(r"regularise +8 +would enlarge the range from 300 pm to 15\.\d+ nm", out)
+    _, out, _ = softafm("info", *short, "--set", "run.regularise=8", "--set", "run.check=true")
+    assert re.search(r"range +15\.\d+ nm +of the law, regularised; it was 300 pm", out)
+    assert re.search(r"Tabor number, slow +8 ", out)
+    assert "with a check" in out
+    assert "regularise" not in softafm("info", "pdms-sphere.toml")[1]
+    code, out, err = softafm("run", *short, "--regularise", "8")
+    assert (code, err) == (0, "")
+    assert re.search(r"range +15\.\d+ nm +of the law, regularised; it was 300 pm", out)
+    slow = ("ldpe-tapping.toml", "--set", "sample.E0=20MPa", "--set", "sample.E_inf=1MPa")
+    assert "crosses its cohesive length 81 times more slowly" in softafm("info", *slow)[1]
+    law = "surface={law='dlvo', hamaker='1e-19J', z0='0.25nm', surface_potential='0mV', "
+    law += "debye_length='1nm'}"
+    assert "is not possible with this law" in softafm("info", *slow, "--set", law)[1]
+    _, out, _ = softafm("info", "ldpe-tapping.toml", "--set", "run.regularise=50")
+    assert re.search(r"range +250 pm +of the law; a Tabor number of \S+ needs no other", out)
 
 
 def test_a_result_of_the_papers_solver_is_run_plotted_and_exported(folder, softafm):
@@ -445,6 +495,7 @@ def test_a_folder_or_a_wrong_suffix_is_no_output(folder, softafm):
          "run.tolerance = 0.01: the solver 'attard' takes fixed steps"),
         (("run", "ldpe-tapping.toml", "--solver", "attard", "--set", "solver.nodes=1"),
          "solver.nodes = 1: must be a whole number from 2 to 2000"),
+        (("run", "ldpe-tapping.toml", "--regularise", "0"), "run.regularise = 0: must be"),
         (("run", "ldpe-tapping.toml", "--tolerance", "0"), "run.tolerance = 0: must be"),
         (("run", "ldpe-tapping.toml", "--tolerance", "nan"), "run.tolerance = nan: must be"),
         (("run", "ldpe-tapping.toml", "--tolerance", "1%"), "run.tolerance = '1%': must be"),

@@ -134,6 +134,55 @@ def refusal(load, document, *overrides):
 # What a file means
 
 
+def test_check_and_regularise_are_read_and_passed_on(load):
+    assert (load(CURVE).check, load(CURVE).regularise) == (False, None)
+    near = ("motion.start=4nm", "motion.turn=0nm", "run.tolerance=0.1")
+    for document in (CURVE, SPECTROSCOPY):
+        experiment = load(document, *near, "run.check=true", "run.regularise=2")
+        assert (experiment.check, experiment.regularise) == (True, 2.0)
+        result = experiment.run()
+        assert result.attrs["check_tolerance"] == pytest.approx(0.01)
+        assert result.attrs["regularised_tabor"] == 2
+        assert result.attrs["given_range"] == pytest.approx(0.25e-9)
+
+
+@pytest.mark.parametrize(
+    ("overrides", "line"),
+    [
+        (["run.check=1"], "run.check = 1: must be true or false"),
+        (["run.regularise=0"], "run.regularise = 0: must be between 0.1 and 100"),
+        (["run.regularise=1000"], "run.regularise = 1000: must be between 0.1 and 100"),
+        (["run.regularise='8'"], "run.regularise = '8': must be a plain number, without quotes"),
+        (["run.regularise=true"], "run.regularise = True: must be a plain number"),
+        (
+            ["run.check=true", "run.tolerance=1e-5"],
+            "run.check = True: a run of tolerance 1e-05 cannot be repeated at a tighter one",
+        ),
+        (
+            ["run.check=true", "solver.name=attard", "solver.nodes=2000"],
+            "run.check = True: the solver 'attard' cannot be run twice as fine: nodes = 4000",
+        ),
+        (
+            [
+                "run.regularise=8",
+                "surface={law='repulsion', pressure_at_zero='1 MPa', decay='1nm'}",
+            ],
+            "run.regularise = 8: surface law 'repulsion': has no adhesion",
+        ),
+        (
+            ["run.regularise=0.1", "sample.E_inf=1kPa"],
+            "run.regularise = 0.1: surface law 'lennard-jones': its range would have to be",
+        ),
+        (
+            ["run.regularise=1", "sample.E_inf=1MPa"],
+            "motion.start = '10 nm': start height = 1e-08 m: must be above the equilibrium gap",
+        ),
+    ],
+)
+def test_what_cannot_be_checked_or_regularised_is_refused(load, overrides, line):
+    assert refusal(load, CURVE, *overrides).startswith(line)
+
+
 def test_the_contracts_example_is_the_contracts_python(load):
     experiment = load(TAP)
     assert experiment.contact == sa.Contact(
@@ -1266,10 +1315,12 @@ def test_garbage_in_tips_samples_and_surfaces(load, built, value):
         (load.folder / name).write_text(content)
     chooser, _ = schema.CHOICES[table]
     document = {**CURVE, table: {chooser: choice, **keys, key: value}}
-    with contextlib.suppress(ConfigError):
+    lines = []
+    try:
         load(document)
-        return
-    assert refusal(load, document).startswith(f"{table}.{key}")
+    except ConfigError as refused:  # each entry of a list has a line
+        lines = str(refused).splitlines()
+    assert all(line.startswith(f"{table}.{key}") for line in lines)
 
 
 def test_several_problems_are_told_together(load):

@@ -276,7 +276,7 @@ def test_surfaces_settle_in_a_minimum_of_the_energy(surface):
 
 def equilibrate(u, v, ac, h0, lever=0.0, rest=0.0, accuracy=1e-7):
     n = MESH.nodes.size
-    work = np.empty((5, n + 1))
+    work = np.empty((4, n + 1))
     iterations = k.equilibrate(
         u, v, ac, h0 + GAPS, lever, rest, RISE,
         MESH, PRESSURE, PARAMETERS, 0.3 * Z0, accuracy, np.empty((n + 1, n + 1)), work,

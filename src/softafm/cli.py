@@ -92,6 +92,10 @@ def run(
     solver: Annotated[str | None, typer.Option(help="Name of the solver.")] = None,
     tolerance: Annotated[str | None, typer.Option(help="Target relative error.")] = None,
     profiles: Annotated[bool, typer.Option("--profiles", help="Keep surface shapes.")] = False,
+    check: Annotated[bool, typer.Option("--check", help="Repeat it finer and compare.")] = False,
+    regularise: Annotated[
+        str | None, typer.Option(help="Tabor number of a softer contact.", metavar="NUMBER")
+    ] = None,
     force: Force = False,
 ) -> None:
     """Run an experiment file, save the result and show its observables."""
@@ -99,6 +103,8 @@ def run(
     changes += [f"solver.name={solver}"] if solver is not None else []
     changes += [f"run.tolerance={tolerance}"] if tolerance is not None else []
     changes += ["run.profiles=true"] if profiles else []
+    changes += ["run.check=true"] if check else []
+    changes += [f"run.regularise={regularise}"] if regularise is not None else []
     with _bad_input():
         from softafm import results
         from softafm.config import ConfigError, load_experiment

@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING, Any
 
 from softafm import schema
 from softafm.contact import Contact
-from softafm.modes.start import refuse_start_inside, refuse_unable
+from softafm.modes.check import finer_run
+from softafm.modes.start import refuse_start_inside, refuse_unable, regularised
 from softafm.refusals import ConfigError, as_written, nearest, one_of, shown, unknown
 
 if TYPE_CHECKING:
@@ -36,7 +37,7 @@ class Experiment:
         What carries the tip, in a mode that needs one.
     solver
         An object from ``softafm.solvers``, or None for the default one.
-    tolerance, profiles
+    tolerance, profiles, check, regularise
         As in ``softafm.force_distance``.
     document
         The file's tables as they were written, overrides included.
@@ -49,6 +50,8 @@ class Experiment:
     solver: Any = None
     tolerance: float = 1e-2
     profiles: bool = False
+    check: bool = False
+    regularise: float | None = None
     document: Mapping[str, Any] = field(default_factory=dict, repr=False, compare=False)
 
     def run(self, progress: bool | Callable[[float, str], None] | None = None) -> "Dataset":
@@ -61,7 +64,10 @@ class Experiment:
         """
         import softafm as sa
 
-        options = {"solver": self.solver, "tolerance": self.tolerance, "progress": progress}
+        options = {
+            name: getattr(self, name) for name in ("solver", "tolerance", "check", "regularise")
+        }
+        options["progress"] = progress
         motion = self.motion
         try:
             if self.mode == "approach-curve":
@@ -219,8 +225,10 @@ def _experiment(document: Mapping[str, Any], folder: Path) -> Experiment:
         raise ConfigError(problems)
     contact = Contact(tip=built["tip"], sample=built["sample"], surface=built["surface"])
     _refuse_flow(contact, mode, built["motion"], document["motion"])
+    _refuse_run(contact, solver, run, document)
     if mode != "approach-curve":
-        _refuse_motion(contact, built["motion"], solver, document["motion"])
+        used = regularised(contact, run.regularise)
+        _refuse_motion(used, built["motion"], solver, document["motion"])
     return Experiment(
         mode=str(mode),
         contact=contact,
@@ -229,8 +237,22 @@ def _experiment(document: Mapping[str, Any], folder: Path) -> Experiment:
         solver=solver,
         tolerance=run.tolerance,
         profiles=run.profiles,
+        check=run.check,
+        regularise=run.regularise,
         document=document,
     )
+
+
+def _refuse_run(contact: Contact, solver: Any, run: schema.Run, document: Mapping) -> None:
+    """Raise ConfigError if the run cannot be checked, or the contact not be regularised."""
+    written = document.get("run", {})
+    try:
+        finer_run(run.check, solver, run.tolerance)
+        regularised(contact, run.regularise)
+    except ValueError as error:
+        key = "check" if str(error).startswith("check") else "regularise"
+        reason = str(error).removeprefix("check = True: ")
+        raise ConfigError([f"run.{key} = {shown(written[key])}: {reason}"]) from None
 
 
 def _refuse_flow(contact: Contact, mode: Any, motion: Any, written: dict) -> None:

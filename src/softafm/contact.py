@@ -1,11 +1,14 @@
 """What touches: tip, sample and the law between them, and the scales that follow."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from math import inf, pi, sqrt
 from typing import TYPE_CHECKING
 
 import numpy as np
+
+from softafm._validate import finite
+from softafm.surfaces.limits import LONGEST
 
 if TYPE_CHECKING:
     from softafm.rheology import Solid
@@ -13,8 +16,12 @@ if TYPE_CHECKING:
     from softafm.tips import Tip
 
 _ZOOMS, _POINTS = 9, 33
+_ANGLES, _ANGLE_WEIGHTS = (pi / 4 * x for x in np.polynomial.legendre.leggauss(16))
+_SINES = np.sin(_ANGLES + pi / 4)
 _SOFT = 1e-4
 """Share of the modulus to which the repulsion of a law without attraction falls at the edge."""
+_TABOR = 0.1, 100.0
+_MOST_STRETCHES, _SAME = 60, 1e-9
 
 
 @dataclass(frozen=True)
@@ -130,6 +137,47 @@ class Contact:
         """
         return self._tabor(self._modulus_relaxed)
 
+    @property
+    def tabor_softened(self) -> float:
+        """Tabor number with the softened modulus: the relaxed one, or of a sample that flows."""
+        return self._tabor(self.softened_modulus)
+
+    def regularised(self, tabor: float) -> "Contact":
+        """Return the contact with a law of longer range, at the same work of adhesion.
+
+        All lengths of the law grow until the Tabor number of the softened sample is ``tabor``.
+        Where it is that or below already, the contact is returned as it is. ``docs/soft.md`` tells
+        what changes and what does not.
+
+        Raises
+        ------
+        ValueError
+            If the number is not from 0.1 to 100, there is no adhesion, or the law has no longer
+            range.
+        """
+        tabor = tabor_of("tabor", tabor)
+        if not self.adhesive:
+            raise ValueError(
+                f"surface law '{self.surface.kind}': has no adhesion, so no Tabor number that a "
+                "longer range could lower; do not regularise it"
+            )
+        if self.tabor_softened <= tabor:
+            return self
+        factor, contact = 1.0, self
+        for _ in range(_MOST_STRETCHES):
+            # The number falls as factor^(-2/3) for a cone to factor^(-4/3) for a flat punch.
+            factor *= (contact.tabor_softened / tabor) ** 0.75
+            if factor * self.surface.range > LONGEST:
+                raise ValueError(
+                    f"surface law '{self.surface.kind}': its range would have to be "
+                    f"{factor * self.surface.range:.3g} m for a Tabor number of {tabor:g}, and "
+                    f"surface forces reach at most {LONGEST:g} m; take a larger number"
+                )
+            contact = replace(self, surface=self.surface.stretched(factor))
+            if abs(contact.tabor_softened / tabor - 1) < _SAME:
+                break
+        return contact
+
     def _cohesive_length(self, modulus: float) -> float:
         if not self.adhesive:
             return inf
@@ -203,7 +251,7 @@ class Contact:
     @cached_property
     def _last_contact(self) -> tuple[float, float]:
         """Radius of the smallest stable relaxed contact, and the depth of the tip there, m."""
-        radius = self.tip.radius_at(self.reach) * np.geomspace(1e-6, 1e6, 20 * _POINTS)
+        radius = self.tip.radius_at(self.reach) * np.geomspace(1e-6, 1e6, 6 * _POINTS)
         for _ in range(_ZOOMS):
             depth = self._relaxed_depth(radius)
             least = np.clip(depth.argmin(), 1, radius.size - 2)
@@ -213,10 +261,18 @@ class Contact:
 
     def _relaxed_depth(self, radius: np.ndarray) -> np.ndarray:
         """Depth of the tip, m, in relaxed contacts of some radii, m, shape (n,)."""
-        points, weights = np.polynomial.legendre.leggauss(16)
-        slope = self.tip.slope(radius[:, None] * np.sin(pi / 4 * (points + 1)))
-        depth = radius * (slope @ weights) * pi / 4
+        slope = self.tip.slope(radius[:, None] * _SINES)
+        depth = radius * (slope @ _ANGLE_WEIGHTS)
         if self.adhesive:
             pull = 2 * pi * self.surface.work_of_adhesion / self.softened_modulus
             depth -= np.sqrt(pull * radius)
         return depth
+
+
+def tabor_of(name: str, value: float) -> float:
+    """Return ``value`` if it is a Tabor number that a contact can be given, 0.1 to 100."""
+    number = finite(name, value, "(no unit)")
+    least, most = _TABOR
+    if not least <= number <= most:
+        raise ValueError(f"{name} = {number:g}: must be between {least:g} and {most:g}")
+    return number

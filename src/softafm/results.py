@@ -154,6 +154,35 @@ def curve_dataset(
     return Dataset(known(data), known(coordinates), attributes)
 
 
+def record_regularisation(result: "Dataset", given, contact, tabor: float | None) -> None:
+    """Write into a result that the range of a law was enlarged, and what the law was like before.
+
+    ``given`` is the contact before, ``tabor`` the number that was asked for; None writes nothing.
+    """
+    if tabor is None:
+        return
+    experiment = json.loads(result.attrs["experiment"])
+    experiment["regularise"] = {"tabor": float(tabor), "surface": describe(given.surface)}
+    result.attrs |= {
+        "experiment": json.dumps(experiment),
+        "regularised_tabor": float(tabor),
+        "regularised_range": contact.surface.range,
+        "given_range": given.surface.range,
+        "given_tabor": given.tabor_softened,
+        "edge_slowed": edge_slowed(given, contact.surface.range),
+    }
+
+
+def edge_slowed(given, longer: float) -> float:
+    """Return by what factor the edge of a contact is slower, in cohesive lengths, at a range, m.
+
+    That of an elastic one is none the slower for it, 1: no rate matters there.
+    """
+    creep = given.sample.reduced_compliance
+    rate_matters = creep.modes.size > 0 or creep.fluidity > 0
+    return (longer / given.surface.range) ** 2 if rate_matters else 1.0
+
+
 def _provenance(mode, contact, parts, solver, tolerance, warnings, diagnostics) -> dict:
     """Return the attributes of a result: its whole input, and how it was computed."""
     things = {"tip": contact.tip, "sample": contact.sample, "surface": contact.surface, **parts}

@@ -25,6 +25,7 @@ from pydantic import (
 from softafm import units
 from softafm._validate import finite, positive, tolerance_of, whole
 from softafm.cantilever import Cantilever
+from softafm.contact import tabor_of
 from softafm.measured import read_trajectory
 from softafm.motions import Sine, Trajectory, Triangle
 from softafm.refusals import ConfigError, all_of, as_written, nearest, one_of, problems, shown
@@ -92,6 +93,14 @@ def _tolerance(written: Any) -> float:
     number = _number(written)
     try:
         return tolerance_of(number)
+    except ValueError as error:
+        raise ValueError(str(error).partition(": ")[2]) from None
+
+
+def _tabor(written: Any) -> float:
+    number = _number(written)
+    try:
+        return tabor_of("regularise", number)
     except ValueError as error:
         raise ValueError(str(error).partition(": ")[2]) from None
 
@@ -194,6 +203,7 @@ Points = Annotated[int, BeforeValidator(_points)]
 Cycles = Annotated[int | Literal["steady"], BeforeValidator(_cycles)]
 Flag = Annotated[bool, BeforeValidator(_flag)]
 Tolerance = Annotated[float, BeforeValidator(_tolerance)]
+Tabor = Annotated[float, BeforeValidator(_tabor)]
 File = Annotated[Path, BeforeValidator(_file), Field(description="the name of a CSV file")]
 
 
@@ -349,6 +359,8 @@ class Run(Table):
 
     tolerance: Tolerance = 1e-2
     profiles: Flag = False
+    check: Flag = False
+    regularise: Tabor | None = None
 
 
 STEPPERS: dict[str, Stepper] = {

@@ -1,5 +1,6 @@
 """Tables for people: what a run found, and what an experiment is before it runs."""
 
+import json
 from math import isfinite
 from typing import TYPE_CHECKING, Any
 
@@ -7,7 +8,9 @@ import numpy as np
 from rich.table import Table
 
 from softafm.modes.approach import deepest_tap, drive_of
+from softafm.modes.start import regularised
 from softafm.motions import lowest_height
+from softafm.results import edge_slowed
 from softafm.rheology.represented import Represented
 from softafm.solvers.energy import Energy, cohesive_lengths_crossed
 from softafm.sweeps import DIRECTIONS, jumps_of
@@ -21,9 +24,12 @@ if TYPE_CHECKING:
     from softafm.contact import Contact
     from softafm.oscillator import Drive
 
-_TAPS = 130
-"""Taps of an approach curve, by experience."""
+_TAPS, _CHECKED = 130, 4
+"""Taps of an approach curve, and runs that one with its check is worth, by experience."""
+_TINY = 1e-5
 _FLOWS = "flows"
+_SOFT, _ADVISED = 30, 8
+"""Tabor number from which on another is advised."""
 _FEW = 4
 """Creep times up to which each has a row of its own."""
 
@@ -31,15 +37,48 @@ _FEW = 4
 def observables(dataset: "Dataset") -> Table:
     """Return a table of every scalar of a result, or of the branches and jumps of a sweep."""
     table = _table(str(dataset.attrs.get("mode", "result")))
+    differences = json.loads(dataset.attrs.get("check_differences", "{}"))
     for name, variable in dataset.data_vars.items():
         if variable.ndim == 0 and np.issubdtype(variable.dtype, np.number):
             value = readable(float(variable), variable.attrs.get("units", ""))
-            table.add_row(str(name), value, str(variable.attrs.get("long_name", "")))
+            words = str(variable.attrs.get("long_name", ""))
+            if name in differences:
+                words += f"; check {_percent(differences[name])}"
+            table.add_row(str(name), value, words)
     if "jump_time" in dataset:
         table.add_row("jumps", str(dataset["jump_time"].size), "elastic instabilities crossed")
     if "branch" in dataset.dims:
         _add_branches(table, dataset)
+    if "check_largest" in dataset.attrs:
+        _add_check(table, dataset.attrs, differences)
+    if "regularised_range" in dataset.attrs:
+        words = _regularised_in_words(
+            *(dataset.attrs[name] for name in ("given_tabor", "given_range", "regularised_range"))
+        )
+        words += _slowed(dataset.attrs["edge_slowed"])
+        table.add_row("range", readable(dataset.attrs["regularised_range"], "m"), words)
     return table
+
+
+def _add_check(table: Table, attributes: dict, differences: dict[str, float]) -> None:
+    """Tell how far a run is from the finer one."""
+    if "check_tolerance" in attributes:
+        against = f"at tolerance {attributes['check_tolerance']:.4g}"
+    else:
+        against = "with twice the steps and nodes"
+    if not differences:
+        table.add_row("check", "failed", f"the run {against} could not be finished")
+        return
+    worst = max(differences, key=lambda name: abs(differences[name]))
+    words = f"largest difference from a run {against}, of {worst}, over its scale"
+    table.add_row("check", _percent(differences[worst]), words)
+    if "check_mean_height" in attributes:
+        height = readable(attributes["check_mean_height"], "m")
+        table.add_row("check of heights", height, "largest difference")
+
+
+def _percent(share: float) -> str:
+    return f"{100 * share:+.2g} %" if abs(share) >= _TINY else f"under {100 * _TINY:g} %"
 
 
 def _add_branches(table: Table, dataset: "Dataset") -> None:
@@ -71,7 +110,8 @@ def _degrees(phase: np.ndarray) -> str:
 
 def regime(experiment: "Experiment") -> Table:
     """Return a table of the numbers that say how a contact will behave and what it will cost."""
-    contact, motion = experiment.contact, experiment.motion
+    contact = regularised(experiment.contact, experiment.regularise)
+    motion = experiment.motion
     tapping = experiment.mode == "approach-curve"
     if tapping:
         drive, frequency = drive_of(
@@ -86,6 +126,7 @@ def regime(experiment: "Experiment") -> Table:
     table = _table(f"{experiment.mode}, before any run")
     _add_tip(table, contact)
     _add_adhesion(table, contact)
+    _add_regularisation(table, experiment, contact)
     carried = experiment.cantilever is not None and not tapping
     where = "above the undeformed surface" + (", lever unbent" if carried else "")
     where = "of a tap: Hertz against the drive" if tapping else where
@@ -95,7 +136,7 @@ def regime(experiment: "Experiment") -> Table:
     words = expected if radius else "none is expected to last"
     table.add_row("contact radius", readable(radius, "m"), words)
     if carried:
-        _add_lever(table, experiment, radius)
+        _add_lever(table, contact, experiment.cantilever.stiffness, radius)
     if tapping:
         _add_drive(table, experiment, drive)
     whole = "tap" if tapping else "motion"
@@ -110,6 +151,9 @@ def regime(experiment: "Experiment") -> Table:
         reason = f"{solver.steps} steps of {solver.nodes} nodes"
     runs = _TAPS if tapping else 1
     reason = f"some {_TAPS} taps; {reason}" if tapping else reason
+    if experiment.check:
+        runs *= _CHECKED
+        reason += "; with a check"
     cost = _cost_in_words(runs * solver.expected_seconds(contact, motion))
     table.add_row("expected cost", cost, reason)
     return table
@@ -140,6 +184,41 @@ def _add_adhesion(table: Table, contact: "Contact") -> None:
         value = readable(length, "m") if length else _FLOWS
         table.add_row(f"cohesive length, {when}", value, "tension zone at the edge")
     table.add_row("work of adhesion", work, f"{law.kind}: per area, to part the surfaces")
+
+
+def _add_regularisation(table: Table, experiment: "Experiment", contact: "Contact") -> None:
+    """Tell what became of a soft contact, or what could."""
+    given = experiment.contact
+    if experiment.regularise is not None:
+        length = contact.surface.range
+        words = _regularised_in_words(given.tabor_softened, given.surface.range, length)
+        words += _slowed(edge_slowed(given, length))
+        table.add_row("range", readable(length, "m"), words)
+    elif given.tabor_softened > _SOFT:
+        length = given.surface.range * given.tabor_softened / _ADVISED
+        try:
+            length = given.regularised(_ADVISED).surface.range
+            words = "would enlarge the range from {} to {}"
+        except ValueError:
+            words = "is not possible with this law, whose range is {}; one of {} would do"
+        words = words.format(readable(given.surface.range, "m"), readable(length, "m"))
+        words += _slowed(edge_slowed(given, length))
+        table.add_row("regularise", f"{_ADVISED:g}", words)
+
+
+def _slowed(slower: float) -> str:
+    """Tell how much slower the edge of a viscoelastic contact is in cohesive lengths."""
+    if slower == 1:
+        return ""
+    return f"; the edge crosses its cohesive length {slower:.2g} times more slowly"
+
+
+def _regularised_in_words(tabor: float, before: float, length: float) -> str:
+    """Tell what Tabor number and range, m, a contact had that has a range of ``length``, m, now."""
+    if before == length:
+        return f"of the law; a Tabor number of {tabor:.3g} needs no other"
+    was = f"it was {readable(before, 'm')} at a Tabor number of {tabor:.3g}"
+    return f"of the law, regularised; {was}"
 
 
 def _add_sample(table: Table, contact: "Contact", duration: float, whole: str) -> None:
@@ -186,9 +265,8 @@ def _slow(contact: "Contact") -> str:
     return "slow"
 
 
-def _add_lever(table: Table, experiment: "Experiment", radius: float) -> None:
-    """Compare the lever with what pulls it in and with what it presses on."""
-    contact, lever = experiment.contact, experiment.cantilever.stiffness
+def _add_lever(table: Table, contact: "Contact", lever: float, radius: float) -> None:
+    """Compare the lever, N/m, with what pulls it in and with what it presses on."""
     table.add_row("lever stiffness", readable(lever, "N/m"), "")
     attraction = contact.steepest_attraction
     words = "softer, the lever snaps in" if lever < attraction else "the lever is stiffer"

@@ -93,13 +93,26 @@ def unit_mesh(edge_spacing: float, growth: float, extent: float) -> UnitMesh:
     spacing = _spacing(nodes, edge_spacing, growth)
 
     masses = _masses(nodes, spacing)
-    stiffness = np.linalg.inv(influence(nodes, spacing, masses))
-    stiffness = (stiffness + stiffness.T) / 2
+    stiffness = _inverse(influence(nodes, spacing, masses))
     far, far_masses = beyond(nodes[-1])
     drift = _drift(nodes, edge_spacing, growth)
     for array in (nodes, masses, stiffness, far, far_masses, drift):
         array.setflags(write=False)
     return UnitMesh(nodes, masses, stiffness, edge_spacing, growth, far, far_masses, drift)
+
+
+def _inverse(matrix):
+    """Inverse of a symmetric positive definite matrix, which is overwritten.
+
+    By the solvers' own factorisation: the bits of LAPACK's depend on the number of threads.
+    """
+    from softafm.solvers.dense import factorise, solve_factorised
+
+    factorise(matrix, len(matrix))
+    inverse = np.eye(len(matrix))
+    for row in inverse:
+        solve_factorised(matrix, row, len(matrix))
+    return (inverse + inverse.T) / 2
 
 
 def _drift(radius, edge_spacing: float, growth: float):
@@ -113,9 +126,7 @@ def _drift(radius, edge_spacing: float, growth: float):
         third += growth**2 * (3 * bend - 1) / size**3
         fourth += growth**4 * side * (9 - 15 * bend) / size**5
     d1, d2, d3, d4 = radius * first, radius**2 * second, radius**3 * third, radius**4 * fourth
-    return np.array(
-        [d1, (d1 + d2) / 2, (d1 + 3 * d2 + d3) / 6, (d1 + 7 * d2 + 6 * d3 + d4) / 24]
-    )
+    return np.array([d1, (d1 + d2) / 2, (d1 + 3 * d2 + d3) / 6, (d1 + 7 * d2 + 6 * d3 + d4) / 24])
 
 
 def beyond(end: float) -> tuple[np.ndarray, np.ndarray]:

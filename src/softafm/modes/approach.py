@@ -4,6 +4,7 @@ Rajabifar et al. 2021, equations (29) to (32), and their general form off resona
 """
 
 import warnings
+from functools import partial
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -13,13 +14,14 @@ from softafm.cantilever import Cantilever
 from softafm.contact import Contact
 from softafm.errors import AccuracyWarning
 from softafm.modes.amplitude_curve import BRANCHES, AmplitudeCurve, Solutions
-from softafm.modes.start import refuse_other_than_cantilever, refuse_steady_flow
+from softafm.modes.check import Scales, checked, finer_run
+from softafm.modes.start import refuse_other_than_cantilever, refuse_steady_flow, regularised
 from softafm.modes.tap_map import OBSERVABLES, TapMap
 from softafm.modes.tapping import tap_observables
 from softafm.motions import Sine
 from softafm.oscillator import Drive
 from softafm.progress import Progress, reporting
-from softafm.results import curve_dataset
+from softafm.results import curve_dataset, record_regularisation
 from softafm.solvers.energy import Energy
 
 if TYPE_CHECKING:
@@ -38,6 +40,8 @@ def approach_curve(
     solver=None,
     tolerance: float = 1e-2,
     progress: bool | Progress | None = None,
+    check: bool = False,
+    regularise: float | None = None,
 ) -> "Dataset":
     """Heights of a tapping lever for given amplitudes, and what it records on approach and retract.
 
@@ -57,7 +61,7 @@ def approach_curve(
         Amplitudes A/A0, each between 0 and 1, shape (n,).
     drive_frequency
         Frequency of the drive, Hz; that of the cantilever by default.
-    solver, tolerance, progress
+    solver, tolerance, progress, check, regularise
         As for ``force_distance``.
 
     Returns
@@ -79,6 +83,8 @@ def approach_curve(
     DivergedError
         If the solver cannot continue.
     """
+    finer = finer_run(check, solver, tolerance)
+    given, contact = contact, regularised(contact, regularise)
     tolerance = tolerance_of(tolerance)
     solver = Energy() if solver is None else solver
     refuse_other_than_cantilever(cantilever)
@@ -113,10 +119,16 @@ def approach_curve(
         "amplitude_ratio": ratios.tolist(),
         "drive_frequency": frequency,
     }
-    return curve_dataset(
+    result = curve_dataset(
         "approach-curve", contact, {"motion": motion, "cantilever": cantilever}, solver, tolerance,
         data, coordinates, warned, {"taps": taps.taps},
     )  # fmt: skip
+    record_regularisation(result, given, contact, regularise)
+    repeat = partial(
+        approach_curve, contact, cantilever, free_amplitude, ratios, drive_frequency=drive_frequency
+    )
+    scales = Scales.of_taps(contact, ratios * free_amplitude, frequency)
+    return checked(result, finer, tolerance, scales, repeat, progress)
 
 
 def drive_of(cantilever: Cantilever, free_amplitude, drive_frequency=None) -> tuple[Drive, float]:

@@ -1,14 +1,16 @@
 """Force-distance curves: the tip height is prescribed."""
 
+from functools import partial
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from softafm.contact import Contact
-from softafm.modes.start import carry
+from softafm.modes.check import Scales, checked, finer_run
+from softafm.modes.start import carry, regularised
 from softafm.motions import Sine, Trajectory, Triangle
 from softafm.progress import Progress
-from softafm.results import dataset
+from softafm.results import dataset, record_regularisation
 
 if TYPE_CHECKING:
     from xarray import Dataset
@@ -22,6 +24,8 @@ def force_distance(
     tolerance: float = 1e-2,
     profiles: bool = False,
     progress: bool | Progress | None = None,
+    check: bool = False,
+    regularise: float | None = None,
 ) -> "Dataset":
     """Force on a tip that is moved through ``motion`` above a surface flat and relaxed at first.
 
@@ -39,6 +43,15 @@ def force_distance(
         Keep surface deformation, gap and pressure over (time, r).
     progress
         None, True for a bar, or a callable (fraction, message).
+    check
+        Repeat the run at a tenth of the tolerance, or with twice the steps and nodes of a solver of
+        fixed steps, and tell the differences in the attributes ``check_...``. One above the
+        tolerance raises ``AccuracyWarning``.
+    regularise
+        Tabor number, 0.1 to 100, to which that of a softer contact is lowered by enlarging the
+        range of the surface law at fixed work of adhesion (``Contact.regularised``). What adhesion
+        a viscoelastic sample has at a speed depends on the range: ``docs/soft.md`` tells what to
+        do. The law as it was given stays in the attribute ``experiment``.
 
     Returns
     -------
@@ -55,9 +68,14 @@ def force_distance(
     DivergedError
         If the solver cannot continue.
     """
+    finer = finer_run(check, solver, tolerance)
+    given, contact = contact, regularised(contact, regularise)
     solver, tolerance, history = carry(contact, motion, solver, tolerance, profiles, progress)
     observables = ramp_observables(history, history.tip_height)
-    return dataset("force-distance", contact, motion, solver, tolerance, history, observables)
+    result = dataset("force-distance", contact, motion, solver, tolerance, history, observables)
+    record_regularisation(result, given, contact, regularise)
+    repeat, scales = partial(force_distance, contact, motion), Scales(contact.reach, contact.reach)
+    return checked(result, finer, tolerance, scales, repeat, progress)
 
 
 def ramp_observables(history, path) -> dict[str, tuple]:

@@ -1,14 +1,16 @@
 """Force spectroscopy: the base of a cantilever is moved, and the lever bends."""
 
+from functools import partial
 from typing import TYPE_CHECKING
 
 from softafm.cantilever import Cantilever
 from softafm.contact import Contact
+from softafm.modes.check import Scales, checked, finer_run
 from softafm.modes.force_distance import ramp_observables
-from softafm.modes.start import carry, refuse_other_than_cantilever
+from softafm.modes.start import carry, refuse_other_than_cantilever, regularised
 from softafm.motions import Sine, Trajectory, Triangle
 from softafm.progress import Progress
-from softafm.results import dataset
+from softafm.results import dataset, record_regularisation
 
 if TYPE_CHECKING:
     from xarray import Dataset
@@ -23,6 +25,8 @@ def force_spectroscopy(
     tolerance: float = 1e-2,
     profiles: bool = False,
     progress: bool | Progress | None = None,
+    check: bool = False,
+    regularise: float | None = None,
 ) -> "Dataset":
     """Force and deflection of a cantilever whose base moves far slower than it vibrates.
 
@@ -39,7 +43,7 @@ def force_spectroscopy(
     motion
         Motion of the base, Z(t), by the height of the unbent tip above the undeformed surface:
         ``Triangle`` (perhaps with ``setpoint_force`` and ``dwell``), ``Sine`` or ``Trajectory``.
-    solver, tolerance, profiles, progress
+    solver, tolerance, profiles, progress, check, regularise
         As for ``force_distance``.
 
     Returns
@@ -56,6 +60,8 @@ def force_spectroscopy(
         If the solver cannot continue.
     """
     refuse_other_than_cantilever(cantilever)
+    finer = finer_run(check, solver, tolerance)
+    given, contact = contact, regularised(contact, regularise)
     solver, tolerance, history = carry(
         contact, motion, solver, tolerance, profiles, progress, stiffness=cantilever.stiffness
     )
@@ -65,6 +71,10 @@ def force_spectroscopy(
         "deflection": ("time", history.tip_height - base),
         **ramp_observables(history, base),
     }
-    return dataset(
+    result = dataset(
         "force-spectroscopy", contact, motion, solver, tolerance, history, observables, cantilever
     )
+    record_regularisation(result, given, contact, regularise)
+    repeat = partial(force_spectroscopy, contact, cantilever, motion)
+    scales = Scales(contact.reach, contact.reach)
+    return checked(result, finer, tolerance, scales, repeat, progress)

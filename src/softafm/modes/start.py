@@ -4,6 +4,7 @@ import warnings
 
 from softafm._validate import tolerance_of
 from softafm.cantilever import Cantilever
+from softafm.contact import Contact, tabor_of
 from softafm.errors import AccuracyWarning
 from softafm.progress import reporting
 from softafm.solvers.energy import Energy
@@ -26,6 +27,11 @@ def carry(contact, motion, solver, tolerance, profiles, progress, **options):
             contact, motion, tolerance=tolerance, profiles=profiles, progress=report, **options
         )
     return solver, tolerance, history
+
+
+def regularised(contact: Contact, tabor: float | None) -> Contact:
+    """Return the contact that a mode's option ``regularise`` stands for."""
+    return contact if tabor is None else contact.regularised(tabor_of("regularise", tabor))
 
 
 def warn_outside_window(contact, motion) -> None:

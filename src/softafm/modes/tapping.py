@@ -1,15 +1,17 @@
 """Tapping: the tip oscillates with given amplitude about a given mean height."""
 
+from functools import partial
 from itertools import pairwise
 from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
 from softafm.contact import Contact
-from softafm.modes.start import carry
+from softafm.modes.check import Scales, checked, finer_run
+from softafm.modes.start import carry, regularised
 from softafm.motions import Sine
 from softafm.progress import Progress
-from softafm.results import dataset
+from softafm.results import dataset, record_regularisation
 
 if TYPE_CHECKING:
     from xarray import Dataset
@@ -26,6 +28,8 @@ def tapping_cycle(
     tolerance: float = 1e-2,
     profiles: bool = False,
     progress: bool | Progress | None = None,
+    check: bool = False,
+    regularise: float | None = None,
 ) -> "Dataset":
     """Cycles of h0 = mean_height + amplitude·cos(2πft) from the top, the surface flat at first.
 
@@ -40,7 +44,7 @@ def tapping_cycle(
     cycles
         Number of cycles from a surface flat and relaxed, or ``"steady"``: cycles repeat, with the
         sample's memory accelerated towards a periodic one, until it ends a cycle as it began it.
-    solver, tolerance, profiles, progress
+    solver, tolerance, profiles, progress, check, regularise
         As for ``force_distance``.
 
     Returns
@@ -59,10 +63,16 @@ def tapping_cycle(
     DivergedError
         If the solver cannot continue.
     """
+    finer = finer_run(check, solver, tolerance)
+    given, contact = contact, regularised(contact, regularise)
     motion = Sine(mean_height, amplitude, frequency, cycles)
     solver, tolerance, history = carry(contact, motion, solver, tolerance, profiles, progress)
     observables = tap_observables(contact, motion, history)
-    return dataset("tapping-cycle", contact, motion, solver, tolerance, history, observables)
+    result = dataset("tapping-cycle", contact, motion, solver, tolerance, history, observables)
+    record_regularisation(result, given, contact, regularise)
+    repeat = partial(tapping_cycle, contact, amplitude, mean_height, frequency, cycles)
+    scales = Scales.of_taps(contact, motion.amplitude, motion.frequency)
+    return checked(result, finer, tolerance, scales, repeat, progress)
 
 
 def tap_observables(contact, motion, history) -> dict[str, tuple]:

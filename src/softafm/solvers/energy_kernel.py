@@ -134,9 +134,7 @@ class Controls(NamedTuple):
     trigger: float
 
 
-MESH = types.NamedTuple(
-    (_CONST, _CONST, _CONST2, float64, float64, _CONST, _CONST, _CONST2), Mesh
-)
+MESH = types.NamedTuple((_CONST, _CONST, _CONST2, float64, float64, _CONST, _CONST, _CONST2), Mesh)
 PARAMETERS = types.NamedUniTuple(_V, len(Parameters._fields), Parameters)
 BACKGROUND = types.NamedTuple((_M, float64, float64, float64, float64, float64), Background)
 CONTROLS = types.NamedUniTuple(float64, len(Controls._fields), Controls)
@@ -188,14 +186,14 @@ def transfer(fields, end, edge_spacing, growth, stretch, nodes, out):
 def reframe(fields, mesh, stretch, out):
     """Fields (m, n) in a frame ``stretch`` times larger, on the same mesh.
 
-    If that shifts the nodes by less than one, the index comes from the series of its map.
+    If that shifts the nodes little, their index comes from the series of its map, to 1e-8.
     """
     if abs(stretch - 1.0) < 1e-12:
         out[:] = fields
         return
     rows, n = fields.shape
     t = log(stretch)
-    if abs(t) > 0.5 * mesh.edge_spacing:
+    if abs(t) > 0.15 * mesh.edge_spacing:
         end = mesh.nodes[n - 1]
         transfer(fields, end, mesh.edge_spacing, mesh.growth, stretch, mesh.nodes, out)
         return
@@ -281,17 +279,14 @@ def equilibrate(
     n = standoff.size
     size = n + 1 if lever > 0.0 else n
     gap, pressure, slope, change = work[0, :n], work[1, :n], work[2, :n], work[3]
-    latest = work[4, :n]
     scale = 1.0 / ac
     for i in range(n):
         gap[i] = standoff[i] + u[n] - u[i]
         if not gap[i] > smallest_gap:
             return -1
-    previous, reuse = 0.5, False
+    previous = 0.5
     for iteration in range(1, 9):
-        law(gap, parameters, pressure, latest, n)
-        if not reuse:
-            slope[:] = latest
+        law(gap, parameters, pressure, slope, n)
         for i in range(n):
             u[i] -= v[i]
         multiply(mesh.stiffness, u[:n], change[:n])
@@ -306,10 +301,9 @@ def equilibrate(
             tail, draw = beyond_mesh(gap[n - 1], rise, mesh, law, parameters, far_work)
             change[n] += tail - lever * (u[n] - rest)
             border += draw
-        if not reuse:
-            _assemble(mesh, scale, slope, 0.0, border, hessian)
-            if not factorise(hessian, size):
-                return -iteration
+        _assemble(mesh, scale, slope, 0.0, border, hessian)
+        if not factorise(hessian, size):
+            return -iteration
         solve_factorised(hessian, change, size)
         if size == n:
             change[n] = 0.0
@@ -318,7 +312,6 @@ def equilibrate(
             largest = max(largest, abs(change[i] - change[n]) / gap[i])
         if not largest < previous:
             return -iteration
-        reuse = largest < 0.02 and not reuse  # so near, the same factors serve once more
         u[n] += change[n]
         for i in range(n):
             u[i] += change[i]
@@ -595,7 +588,7 @@ def advance(
     compliance, retardation = parameters.compliance, parameters.retardation
     modes = retardation.size
     hessian = np.empty((n + 1, n + 1))
-    newton_work = np.empty((5, n + 1))
+    newton_work = np.empty((4, n + 1))
     far_work = np.empty((3, mesh.far.size))
     rise = np.empty(mesh.far.size)
     gap, pressure = newton_work[0, :n], newton_work[1, :n]

@@ -113,16 +113,17 @@ def cubics(time, at):
     right = np.searchsorted(time, at.mean(axis=1))
     first = np.clip(right - 2, 0, time.size - count)
     near = first[:, None] + np.arange(count)
-    offsets = at[:, :, None] - time[near][:, None, :]
-    basis = np.ones(offsets.shape)
+    instants = time[near].T
+    offsets = at - instants[:, :, None]
+    terms = np.empty(offsets.shape)
     for j in range(count):
-        for other in range(count):
-            if other != j:
-                apart = time[near[:, j]] - time[near[:, other]]
-                basis[:, :, j] *= offsets[:, :, other] / apart[:, None]
+        others = [other for other in range(count) if other != j]
+        apart = np.prod(instants[j] - instants[others], axis=0)
+        terms[j] = np.prod(offsets[others], axis=0) / apart[:, None]
+    basis = np.ascontiguousarray(np.moveaxis(terms, 0, -1))
     # A cubic runs wild across an interval that is much longer than one beside it: a line does not.
     length = time[right] - time[right - 1]
-    for row in np.flatnonzero(length > _LONGEST * np.diff(time[near]).min(axis=1)):
+    for row in np.flatnonzero(length > _LONGEST * np.diff(instants, axis=0).min(axis=0)):
         part = (at[row] - time[right[row] - 1]) / length[row]
         basis[row] = 0
         basis[row, :, right[row] - 1 - first[row]] = 1 - part

@@ -1,6 +1,6 @@
 """Van der Waals attraction down to a stiff contact, as Derjaguin, Muller and Toporov take it."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import pi
 from typing import ClassVar
 
@@ -68,6 +68,11 @@ class DMT(SurfaceLaw):
     def equilibrium_gap(self) -> float:
         """Gap of zero pressure, z0, m."""
         return self.z0
+
+    def stretched(self, factor: float) -> "DMT":
+        """Return the law with all its lengths times ``factor``, of the same work of adhesion."""
+        factor = positive("factor", factor, "")
+        return replace(self, hamaker=factor**2 * self.hamaker, z0=factor * self.z0)
 
     @property
     def terms(self) -> tuple[Term, Term]:

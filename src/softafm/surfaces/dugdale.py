@@ -1,6 +1,6 @@
 """Dugdale's constant tension over a cohesive range, with smooth edges."""
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from math import exp, log, log1p, sqrt
 from typing import ClassVar
@@ -79,6 +79,11 @@ class Dugdale(SurfaceLaw):
         """Gap where the attraction is strongest, about half-way between z0 and hc, m."""
         q = exp(-self._ratio)
         return self.z0 - self._width * log(sqrt(q * (1 + q)) - q)
+
+    def stretched(self, factor: float) -> "Dugdale":
+        """Return the law with all its lengths times ``factor``, of the same work of adhesion."""
+        factor = positive("factor", factor, "")
+        return replace(self, z0=factor * self.z0, tension=self.tension / factor)
 
     @property
     def terms(self) -> tuple[Term]:

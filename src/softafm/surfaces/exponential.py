@@ -1,6 +1,6 @@
 """Exponential attraction with a steeper exponential repulsion."""
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from math import log
 from typing import ClassVar
 
@@ -60,6 +60,13 @@ class Exponential(SurfaceLaw):
     def gap_of_largest_tension(self) -> float:
         """Gap where the attraction is strongest, z0 + ln(decay/core)/(1/core − 1/decay), m."""
         return self.z0 + log(self.decay / self.core) / (1 / self.core - 1 / self.decay)
+
+    def stretched(self, factor: float) -> "Exponential":
+        """Return the law with all its lengths times ``factor``, of the same work of adhesion."""
+        factor = positive("factor", factor, "")
+        return replace(
+            self, z0=factor * self.z0, decay=factor * self.decay, core=factor * self.core
+        )
 
     @property
     def terms(self) -> tuple[Term, Term]:

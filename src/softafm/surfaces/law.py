@@ -119,6 +119,21 @@ class SurfaceLaw(ABC):
         beyond = self.gap_of_largest_tension + self.range * _OUTWARDS
         return float(self.slope(beyond).max()) * self.range / self.largest_tension / _STEEPEST
 
+    def stretched(self, factor: float) -> "SurfaceLaw":
+        """Return the law with all its lengths times ``factor``, of the same work of adhesion.
+
+        Its pressure is p(h/factor)/factor.
+
+        Raises
+        ------
+        ValueError
+            If the factor is not above 0 or the law has lengths of its own that must not change.
+        """
+        raise ValueError(
+            f"surface law '{self.kind}': cannot be stretched, as its lengths have meanings of "
+            "their own; use a law such as 'lennard-jones' of the same work of adhesion"
+        )
+
     @property
     def compiled_pressure(self):
         """p and Φ compiled for solvers, and their parameters (see ``softafm.compiled``)."""

@@ -1,6 +1,6 @@
 """The Lennard-Jones law between half-spaces."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import pi
 from typing import ClassVar
 
@@ -64,6 +64,11 @@ class LennardJones(SurfaceLaw):
     def range(self) -> float:
         """The equilibrium gap z0, m."""
         return self.z0
+
+    def stretched(self, factor: float) -> "LennardJones":
+        """Return the law with all its lengths times ``factor``, of the same work of adhesion."""
+        factor = positive("factor", factor, "")
+        return replace(self, hamaker=factor**2 * self.hamaker, z0=factor * self.z0)
 
     @property
     def terms(self) -> tuple[Term]:

@@ -1,6 +1,6 @@
 """The Morse law."""
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from math import log
 from typing import ClassVar
 
@@ -56,6 +56,11 @@ class Morse(SurfaceLaw):
     def gap_of_largest_tension(self) -> float:
         """Gap where the attraction is strongest, z0 + ln(2)·decay, m."""
         return self.z0 + log(2) * self.decay
+
+    def stretched(self, factor: float) -> "Morse":
+        """Return the law with all its lengths times ``factor``, of the same work of adhesion."""
+        factor = positive("factor", factor, "")
+        return replace(self, z0=factor * self.z0, decay=factor * self.decay)
 
     @property
     def terms(self) -> tuple[Term]:

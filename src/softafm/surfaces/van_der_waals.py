@@ -1,6 +1,6 @@
 """Van der Waals attraction between half-spaces, with a repulsion of any power."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import pi
 from typing import ClassVar
 
@@ -76,6 +76,11 @@ class VanDerWaals(SurfaceLaw):
     def gap_of_largest_tension(self) -> float:
         """Gap where the attraction is strongest, z0·(n/3)^(1/(n−3)), m."""
         return self.z0 * (self.exponent / 3) ** (1 / (self.exponent - 3))
+
+    def stretched(self, factor: float) -> "VanDerWaals":
+        """Return the law with all its lengths times ``factor``, of the same work of adhesion."""
+        factor = positive("factor", factor, "")
+        return replace(self, hamaker=factor**2 * self.hamaker, z0=factor * self.z0)
 
     @property
     def terms(self) -> tuple[Term]:
