@@ -305,8 +305,8 @@ class Run:
             length = self.contact.softened_modulus * law.range**2 / law.work_of_adhesion
             wide = max(coarseness, 2 * spacing / length) / self.target
             remedy = (
-                f", or enlarge z0 at fixed work of adhesion, LennardJones.from_work_of_adhesion(W="
-                f"{law.work_of_adhesion:.4g}, z0={sqrt(wide) * law.range:.2g})"
+                ", or enlarge the range of the attraction at fixed work of adhesion, regularise="
+                f"{self.contact.tabor_softened / sqrt(wide):.2g}"
             )
         return (
             f"the cohesive zone at the contact edge, {spacing / coarseness:.2g} m wide, is "
