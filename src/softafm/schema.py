@@ -13,7 +13,6 @@ from typing import Annotated, Any, ClassVar, Literal, get_args, get_origin, get_
 import numpy as np
 from pydantic import (
     BaseModel,
-    BeforeValidator,
     ConfigDict,
     Field,
     ValidationError,
@@ -22,10 +21,42 @@ from pydantic import (
     field_validator,
 )
 
-from softafm import units
-from softafm._validate import finite, positive, tolerance_of, whole
+from softafm._validate import positive
 from softafm.cantilever import Cantilever
-from softafm.contact import tabor_of
+from softafm.entries import (
+    Angle,
+    Compliances,
+    Concentration,
+    Cycles,
+    Entries,
+    File,
+    Flag,
+    Frequency,
+    Joules,
+    JoulesPerArea,
+    Length,
+    Moduli,
+    Modulus,
+    Newtons,
+    Number,
+    Numbers,
+    Points,
+    Pressure,
+    QualityFactor,
+    Ratio,
+    Ratios,
+    Speed,
+    Stiffness,
+    Tabor,
+    Temperature,
+    Time,
+    Times,
+    Tolerance,
+    Viscosity,
+    Voltage,
+    Whole,
+    choice_of,
+)
 from softafm.measured import read_trajectory
 from softafm.motions import Sine, Trajectory, Triangle
 from softafm.refusals import ConfigError, all_of, as_written, nearest, one_of, problems, shown
@@ -68,143 +99,6 @@ from softafm.tips import (
     Sphere,
     read_tip_profile,
 )
-
-_MOST_RATIOS = 1000
-
-
-def _read(kind: units.Kind) -> BeforeValidator:
-    return BeforeValidator(lambda written: units.read_quantity(written, kind))
-
-
-def _described(kind: units.Kind, prefix: str = "") -> Any:
-    return Field(description=prefix + kind.valid)
-
-
-def _number(written: Any) -> float:
-    if isinstance(written, bool) or not isinstance(written, int | float):
-        raise ValueError("must be a plain number, without quotes or unit")
-    try:
-        return finite("", written, "")
-    except (ValueError, OverflowError):
-        raise ValueError("must be a finite number") from None
-
-
-def _tolerance(written: Any) -> float:
-    number = _number(written)
-    try:
-        return tolerance_of(number)
-    except ValueError as error:
-        raise ValueError(str(error).partition(": ")[2]) from None
-
-
-def _tabor(written: Any) -> float:
-    number = _number(written)
-    try:
-        return tabor_of("regularise", number)
-    except ValueError as error:
-        raise ValueError(str(error).partition(": ")[2]) from None
-
-
-def _cycles(written: Any) -> int | str:
-    if written == "steady":
-        return "steady"
-    try:
-        return whole("cycles", written, 1, 1_000_000)
-    except ValueError:
-        raise ValueError("must be a whole number from 1 to 1000000, or 'steady'") from None
-
-
-def _points(written: Any) -> int:
-    try:
-        return whole("points", written, 2, _MOST_RATIOS)
-    except ValueError:
-        raise ValueError(f"must be a whole number from 2 to {_MOST_RATIOS}") from None
-
-
-def _ratio(written: Any) -> float:
-    number = _number(written)
-    if not 0 < number < 1:
-        raise ValueError("must be above 0 and below 1")
-    return number
-
-
-def _ratios(written: Any) -> Any:
-    if isinstance(written, list) and len(written) > _MOST_RATIOS:
-        raise ValueError(f"has {len(written)} entries: must have at most {_MOST_RATIOS}")
-    return _list(written)
-
-
-def _whole(written: Any) -> int:
-    if isinstance(written, bool) or not isinstance(written, int) or abs(written) >= 2**63:
-        raise ValueError("must be a whole number, such as 100")
-    return written
-
-
-def _flag(written: Any) -> bool:
-    if not isinstance(written, bool):
-        raise ValueError("must be true or false")
-    return written
-
-
-def _choice(choices: Mapping[str, Any]) -> BeforeValidator:
-    def read(written: Any) -> Any:
-        if not isinstance(written, str) or written not in choices:
-            raise ValueError(f"must be {one_of(list(choices))}")
-        return choices[written]
-
-    return BeforeValidator(read)
-
-
-def _list(written: Any) -> Any:
-    if not isinstance(written, list) or not written:
-        raise ValueError("must be a list, in square brackets, with at least one entry")
-    return tuple(written)
-
-
-def _file(written: Any, info: ValidationInfo) -> Path:
-    if not isinstance(written, str) or not written or "\0" in written:
-        raise ValueError("must be the name of a CSV file, such as 'approach.csv'")
-    folder = info.context["folder"] if info.context else Path()
-    return folder / written
-
-
-Length = Annotated[float, _read(units.LENGTH), _described(units.LENGTH)]
-Time = Annotated[float, _read(units.TIME), _described(units.TIME)]
-Speed = Annotated[float, _read(units.SPEED), _described(units.SPEED)]
-Frequency = Annotated[float, _read(units.FREQUENCY), _described(units.FREQUENCY)]
-Modulus = Annotated[float, _read(units.MODULUS), _described(units.MODULUS)]
-Newtons = Annotated[float, _read(units.FORCE), _described(units.FORCE)]
-Stiffness = Annotated[float, _read(units.STIFFNESS), _described(units.STIFFNESS)]
-Joules = Annotated[float, _read(units.ENERGY), _described(units.ENERGY)]
-JoulesPerArea = Annotated[float, _read(units.ENERGY_PER_AREA), _described(units.ENERGY_PER_AREA)]
-Pressure = Annotated[float, _read(units.PRESSURE), _described(units.PRESSURE)]
-Angle = Annotated[float, _read(units.ANGLE), _described(units.ANGLE)]
-Voltage = Annotated[float, _read(units.VOLTAGE), _described(units.VOLTAGE)]
-Temperature = Annotated[float, _read(units.TEMPERATURE), _described(units.TEMPERATURE)]
-Viscosity = Annotated[float, _read(units.VISCOSITY), _described(units.VISCOSITY)]
-Concentration = Annotated[float, _read(units.CONCENTRATION), _described(units.CONCENTRATION)]
-Compliances = Annotated[
-    tuple[Annotated[float, _read(units.COMPLIANCE)], ...],
-    BeforeValidator(_list),
-    _described(units.COMPLIANCE, "a list, each "),
-]
-Moduli = Annotated[
-    tuple[Modulus, ...], BeforeValidator(_list), _described(units.MODULUS, "a list, each ")
-]
-Times = Annotated[tuple[Time, ...], BeforeValidator(_list), _described(units.TIME, "a list, each ")]
-Number = Annotated[float, BeforeValidator(_number), Field(description="a number, such as 0.49")]
-Numbers = Annotated[tuple[Number, ...], BeforeValidator(_list)]
-QualityFactor = Annotated[
-    float, BeforeValidator(_number), Field(description="a number, such as 430")
-]
-Ratio = Annotated[float, BeforeValidator(_ratio)]
-Ratios = Annotated[tuple[Ratio, ...], BeforeValidator(_ratios)]
-Points = Annotated[int, BeforeValidator(_points)]
-Cycles = Annotated[int | Literal["steady"], BeforeValidator(_cycles)]
-Flag = Annotated[bool, BeforeValidator(_flag)]
-Tolerance = Annotated[float, BeforeValidator(_tolerance)]
-Tabor = Annotated[float, BeforeValidator(_tabor)]
-File = Annotated[Path, BeforeValidator(_file), Field(description="the name of a CSV file")]
 
 
 class Table(BaseModel):
@@ -374,11 +268,11 @@ _WITH_UNIT = {"domain": Length}
 """Parameters of solvers with a unit, which their type does not tell."""
 
 _PLAIN: dict[Any, Any] = {
-    int: Annotated[Any, BeforeValidator(_whole)],
+    int: Whole,
     float: Number,
     float | None: Number,
     bool: Flag,
-    Stepper: Annotated[Any, _choice(STEPPERS)],
+    Stepper: Annotated[Any, choice_of(STEPPERS)],
 }
 """How all other parameters are written, by the type that the solver's dataclass declares."""
 
@@ -406,7 +300,7 @@ def _written(name: str, declared: Any) -> Any:
     if name in _WITH_UNIT:
         return _WITH_UNIT[name]
     if get_origin(declared) is Literal:
-        return Annotated[Any, _choice({choice: choice for choice in get_args(declared)})]
+        return Annotated[Any, choice_of({choice: choice for choice in get_args(declared)})]
     return _PLAIN[declared]
 
 
@@ -509,8 +403,7 @@ class SumSurface(Table):
     """``[surface] law = "sum"``: each of its ``[[surface.parts]]`` is like a ``[surface]``."""
 
     parts: Annotated[
-        tuple[Any, ...],
-        BeforeValidator(_list),
+        Entries,
         Field(description="tables [[surface.parts]], each with a law and its keys"),
     ]
 
