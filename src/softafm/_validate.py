@@ -24,6 +24,22 @@ def finite(name: str, value: float, unit: str) -> float:
     return number
 
 
+def between(name: str, value: float, unit: str, least: float, most: float) -> float:
+    """Return ``value`` as a float if it lies from ``least`` to ``most``."""
+    number = finite(name, value, unit)
+    if not least <= number <= most:
+        shown = f"{name} = {number:g} {unit}".rstrip()
+        raise ValueError(f"{shown}: must be between {least:g} and {most:g} {unit}".rstrip())
+    return number
+
+
+def numbers(name: str, values, unit: str) -> tuple[float, ...]:
+    """Return the values as a tuple of finite floats, else raise ValueError naming the entry."""
+    if isinstance(values, str | bytes | dict) or not hasattr(values, "__iter__"):
+        raise ValueError(f"{name} = {values!r}: must be a list of numbers in {unit}")
+    return tuple(finite(f"{name}[{i}]", value, unit) for i, value in enumerate(values))
+
+
 def whole(name: str, value: int, least: int, most: int) -> int:
     """Return ``value`` if it is a whole number from ``least`` to ``most``."""
     if isinstance(value, bool) or not isinstance(value, int) or not least <= value <= most:
@@ -51,7 +67,9 @@ def poisson_ratio(value: float) -> float:
 
 def tolerance_of(value: float) -> float:
     """Return ``value`` if it is a tolerance that solvers can keep, 1e-5 to 0.1."""
-    number = finite("tolerance", value, "(no unit)")
-    if not 1e-5 <= number <= 0.1:
-        raise ValueError(f"tolerance = {number:g}: must be between 1e-5 and 0.1")
-    return number
+    return between("tolerance", value, "", 1e-5, 0.1)
+
+
+def tabor_of(name: str, value: float) -> float:
+    """Return ``value`` if it is a Tabor number that a contact can be given, 0.1 to 100."""
+    return between(name, value, "", 0.1, 100)

@@ -230,7 +230,7 @@ def info(config: Config, overrides: Overrides = None) -> None:
     """Show the regime, the scales and the expected cost of an experiment, without running it."""
     with _bad_input():
         from softafm.config import load_experiment
-        from softafm.summary import regime
+        from softafm.regime import regime
 
         table = regime(load_experiment(config, overrides or []))
     _print(table)

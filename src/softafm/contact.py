@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from softafm._validate import finite
+from softafm._validate import tabor_of
 from softafm.surfaces.limits import LONGEST
 
 if TYPE_CHECKING:
@@ -20,7 +20,6 @@ _ANGLES, _ANGLE_WEIGHTS = (pi / 4 * x for x in np.polynomial.legendre.leggauss(1
 _SINES = np.sin(_ANGLES + pi / 4)
 _SOFT = 1e-4
 """Share of the modulus to which the repulsion of a law without attraction falls at the edge."""
-_TABOR = 0.1, 100.0
 _MOST_STRETCHES, _SAME = 60, 1e-9
 
 
@@ -267,12 +266,3 @@ class Contact:
             pull = 2 * pi * self.surface.work_of_adhesion / self.softened_modulus
             depth -= np.sqrt(pull * radius)
         return depth
-
-
-def tabor_of(name: str, value: float) -> float:
-    """Return ``value`` if it is a Tabor number that a contact can be given, 0.1 to 100."""
-    number = finite(name, value, "(no unit)")
-    least, most = _TABOR
-    if not least <= number <= most:
-        raise ValueError(f"{name} = {number:g}: must be between {least:g} and {most:g}")
-    return number

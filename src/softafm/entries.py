@@ -7,8 +7,7 @@ from typing import Annotated, Any, Literal
 from pydantic import BeforeValidator, Field, ValidationInfo
 
 from softafm import units
-from softafm._validate import finite, tolerance_of, whole
-from softafm.contact import tabor_of
+from softafm._validate import finite, tabor_of, tolerance_of, whole
 from softafm.refusals import one_of
 
 _MOST_RATIOS = 1000

@@ -2,9 +2,9 @@
 
 import warnings
 
-from softafm._validate import tolerance_of
+from softafm._validate import tabor_of, tolerance_of
 from softafm.cantilever import Cantilever
-from softafm.contact import Contact, tabor_of
+from softafm.contact import Contact
 from softafm.errors import AccuracyWarning
 from softafm.progress import reporting
 from softafm.solvers.energy import Energy

@@ -2,21 +2,19 @@
 
 import numpy as np
 
-from softafm._validate import finite, positive
+from softafm._validate import numbers, positive
 
 
 def positives(name: str, values, unit: str, *, zeros: bool = False) -> tuple[float, ...]:
     """Return the values as a tuple of floats above zero, or not below it if ``zeros``."""
-    if isinstance(values, str | bytes | dict) or not hasattr(values, "__iter__"):
-        raise ValueError(f"{name} = {values!r}: must be a list of numbers in {unit}")
-    numbers = []
-    for index, value in enumerate(values):
+    checked = numbers(name, values, unit)
+    for index, number in enumerate(checked):
         entry = f"{name}[{index}]"
-        number = finite(entry, value, unit)
         if zeros and number < 0:
             raise ValueError(f"{entry} = {number:g} {unit}: must not be negative")
-        numbers.append(number if zeros else positive(entry, number, unit))
-    return tuple(numbers)
+        if not zeros:
+            positive(entry, number, unit)
+    return checked
 
 
 def as_many(name: str, values: tuple, as_name: str, as_values: tuple) -> None:

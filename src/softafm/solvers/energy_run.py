@@ -18,7 +18,6 @@ _MOST_CYCLES = 150
 _PATIENCE = 8
 _SHARPEST = 3.2
 _MOST_TRIES_IN_A_FALL = 5000.0
-_TRIES_A_LENGTH = 8.0
 
 
 class Run:
@@ -198,8 +197,6 @@ class Run:
         instantaneous, modes = parameters.compliance[0], parameters.compliance[1:]
         tabor = self.contact.tabor_instantaneous
         stiff = instantaneous * min(0.2, (0.4 / tabor) ** 1.5 if tabor else 0.2)
-        lengths = clock[k.EDGE] / self.contact.cohesive_length_instantaneous
-        most = clock[k.TRIES] + _MOST_TRIES_IN_A_FALL + _TRIES_A_LENGTH * lengths
         delayed = instantaneous - stiff
         surface.functions = (still, *functions[1:])
         # The clock of the fall starts at 0; the past goes on fading from where it is.
@@ -216,7 +213,7 @@ class Run:
             self.controls = controls._replace(
                 shortest_step=1e-9 * creep_time, longest_step=duration, top_speed=1e-300,
                 prediction=0.2, memory=0.2, force=1.0, trigger=np.inf,
-                most_tries=min(controls.most_tries, most),
+                most_tries=min(controls.most_tries, clock[k.TRIES] + _MOST_TRIES_IN_A_FALL),
             )  # fmt: skip
             clock[k.TIME], clock[k.STEP], clock[k.HISTORY] = 0.0, 1e-3 * creep_time, 1
             outcome = k.FULL

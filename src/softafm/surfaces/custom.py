@@ -6,7 +6,7 @@ from typing import ClassVar
 
 import numpy as np
 
-from softafm.formulas import Term, bound_parameters
+from softafm.formulas import Term, bound_parameters, first_line
 from softafm.surfaces.law import SurfaceLaw
 
 _GAPS = np.geomspace(1e-12, 1e-6, 301)
@@ -72,12 +72,10 @@ class CustomSurface(SurfaceLaw):
         try:
             p, slope, potential = self._evaluate(_GAPS)
             far = float(self.potential(_FAR))
-        except Exception as error:  # numba raises many types, of many lines each
-            lines = [line.strip() for line in str(error).splitlines() if line.strip()]
-            first = next((line for line in lines if not line.startswith("Failed in")), "")
+        except Exception as error:  # numba raises many types
             raise ValueError(
                 f"{wrong}must be one that numba compiles and that returns (pressure, slope, "
-                f"potential) at any gap: {type(error).__name__}: {first}"
+                f"potential) at any gap: {first_line(error)}"
             ) from error
         tension = max(float(np.max(-p, initial=0.0, where=np.isfinite(p))), 1e6)
         checked = ~(p > _STRONGEST * tension)

@@ -4,11 +4,11 @@ from dataclasses import dataclass
 from math import sqrt, tanh
 from typing import ClassVar
 
-from softafm._validate import positive
+from softafm._validate import between, positive
 from softafm.formulas import Term
 from softafm.surfaces.law import SurfaceLaw
 from softafm.surfaces.lennard_jones import _lennard_jones
-from softafm.surfaces.limits import between, length
+from softafm.surfaces.limits import length
 from softafm.surfaces.repulsion import exponential
 
 _CHARGE, _BOLTZMANN, _AVOGADRO = 1.602176634e-19, 1.380649e-23, 6.02214076e23

@@ -4,11 +4,11 @@ from dataclasses import dataclass, replace
 from math import pi
 from typing import ClassVar
 
-from softafm._validate import positive
+from softafm._validate import between, positive
 from softafm.formulas import Term
 from softafm.surfaces.attraction import attraction
 from softafm.surfaces.law import SurfaceLaw
-from softafm.surfaces.limits import between, length
+from softafm.surfaces.limits import length
 from softafm.surfaces.repulsion import exponential
 
 _WALLS = 0.02, 0.25

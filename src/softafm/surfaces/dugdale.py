@@ -7,10 +7,10 @@ from typing import ClassVar
 
 import numpy as np
 
-from softafm._validate import positive
+from softafm._validate import between, positive
 from softafm.formulas import Term
 from softafm.surfaces.law import SurfaceLaw
-from softafm.surfaces.limits import between, length
+from softafm.surfaces.limits import length
 
 
 @dataclass(frozen=True)

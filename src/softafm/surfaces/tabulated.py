@@ -8,7 +8,7 @@ from typing import ClassVar
 
 import numpy as np
 
-from softafm._validate import finite, whole
+from softafm._validate import numbers, whole
 from softafm.formulas import Term
 from softafm.surfaces.law import SurfaceLaw
 from softafm.surfaces.limits import length
@@ -52,8 +52,8 @@ class Tabulated(SurfaceLaw):
 
     def __post_init__(self):
         gaps, pressures = (
-            _numbers("gaps", self.gaps, "m"),
-            _numbers("pressures", self.pressures, "Pa"),
+            numbers("gaps", self.gaps, "m"),
+            numbers("pressures", self.pressures, "Pa"),
         )
         _refuse_what_is_no_law(gaps, pressures)
         object.__setattr__(self, "gaps", gaps)
@@ -119,12 +119,6 @@ def _tabulated(h, table):
 def _power(gaps: Sequence[float], pressures: Sequence[float]) -> float:
     power = log(pressures[-2] / pressures[-1]) / log(gaps[-1] / gaps[-2])
     return max(power, _SLOWEST)
-
-
-def _numbers(name: str, values, unit: str) -> tuple[float, ...]:
-    if isinstance(values, str | bytes | dict) or not hasattr(values, "__iter__"):
-        raise ValueError(f"{name} = {values!r}: must be a list of numbers in {unit}")
-    return tuple(finite(f"{name}[{i}]", value, unit) for i, value in enumerate(values))
 
 
 def _refuse_what_is_no_law(gaps: tuple[float, ...], pressures: tuple[float, ...]) -> None:

@@ -7,7 +7,7 @@ from typing import ClassVar
 
 import numpy as np
 
-from softafm.formulas import Term, bound_parameters
+from softafm.formulas import Term, bound_parameters, first_line
 from softafm.tips.tip import Tip
 
 _RADII = np.geomspace(1e-13, 1e-2, 1101)
@@ -68,12 +68,10 @@ class CustomTip(Tip):
         name = getattr(self.function, "__name__", "function")
         try:
             height = self.profile(np.append(0.0, _RADII))
-        except Exception as error:  # numba raises many types, of many lines each
-            lines = [line.strip() for line in str(error).splitlines() if line.strip()]
-            first = next((line for line in lines if not line.startswith("Failed in")), "")
+        except Exception as error:  # numba raises many types
             raise ValueError(
                 f"function = {name}: must be one that numba compiles and that has a value at any "
-                f"radius: {type(error).__name__}: {first}"
+                f"radius: {first_line(error)}"
             ) from error
         r = np.append(0.0, _RADII)
         for i in np.flatnonzero(~np.isfinite(height)):

@@ -6,7 +6,7 @@ from typing import ClassVar
 
 import numpy as np
 
-from softafm._validate import finite
+from softafm._validate import numbers
 from softafm.formulas import Term
 from softafm.tips.tip import Tip
 
@@ -43,7 +43,7 @@ class MeasuredTip(Tip):
     height: tuple[float, ...]
 
     def __post_init__(self):
-        r, height = _numbers("r", self.r), _numbers("height", self.height)
+        r, height = numbers("r", self.r, "m"), numbers("height", self.height, "m")
         _refuse_what_is_no_profile(r, height)
         object.__setattr__(self, "r", r)
         object.__setattr__(self, "height", height)
@@ -75,12 +75,6 @@ def _height(r, table):
     t = (square - table[i]) / width
     cubic = t * (start + t * (3 * rise - 2 * start - end + t * (start + end - 2 * rise)))
     return table[n + i] + cubic + 2 * last * table[3 * n - 1] * (r - np.minimum(r, last))
-
-
-def _numbers(name: str, values) -> tuple[float, ...]:
-    if isinstance(values, str | bytes | dict) or not hasattr(values, "__iter__"):
-        raise ValueError(f"{name} = {values!r}: must be a list of numbers in m")
-    return tuple(finite(f"{name}[{i}]", value, "m") for i, value in enumerate(values))
 
 
 def _refuse_what_is_no_profile(r: tuple[float, ...], height: tuple[float, ...]) -> None:
