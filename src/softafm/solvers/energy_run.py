@@ -84,7 +84,7 @@ class Run:
                 if outcome == k.STUCK:
                     raise DivergedError(
                         f"stopped at t = {surface.time:g} s after {surface.clock[k.TRIES]:.0f} "
-                        f"attempted steps (most_steps = {self.solver.most_steps})",
+                        f"attempted steps (most_steps = {self.solver.most_steps}){self._softer()}",
                         self.history(0.0),
                     )
                 if outcome == k.REMESH:
@@ -312,6 +312,11 @@ class Run:
             f"{self.target * spacing / coarseness:.2g} m is needed: forces and above all the loop "
             f"energy may be wrong. Lower solvers.Energy(finest_spacing=...){remedy}",
         )
+
+    def _softer(self) -> str:
+        """Advise a longer range where the contact is too soft for its own."""
+        tabor = self.contact.tabor_softened
+        return f"; its Tabor number is {tabor:.3g}: try regularise=8" if tabor > 30 else ""
 
     def _too_sharp(self) -> tuple[str, ...]:
         law = self.contact.surface
