@@ -114,7 +114,7 @@ def load_experiment(path: str | Path, overrides: Sequence[str] = ()) -> Experime
     document = _parse(path)
     for override in overrides:
         _override(document, override)
-    return _experiment(document, path.parent)
+    return experiment_from(document, path.parent)
 
 
 def example_names() -> list[str]:
@@ -148,6 +148,11 @@ def _parse(path: Path) -> dict[str, Any]:
         raise ConfigError(
             [f"{name}: is not text in UTF-8 (byte {error.start}); save it as UTF-8"]
         ) from None
+    return document_from(text, name)
+
+
+def document_from(text: str, name: str) -> dict[str, Any]:
+    """Return the tables of an experiment file's text; ``name`` is what a ConfigError calls it."""
     if not text.strip():
         raise ConfigError([f"{name}: is empty; 'softafm example' shows what it may hold"])
     try:
@@ -183,7 +188,14 @@ def _override_value(text: str) -> Any:
     return parsed["value"] if len(parsed) == 1 else text
 
 
-def _experiment(document: Mapping[str, Any], folder: Path) -> Experiment:
+def experiment_from(document: Mapping[str, Any], folder: Path) -> Experiment:
+    """Build the experiment that a file's tables describe; other files are sought in ``folder``.
+
+    Raises
+    ------
+    ConfigError
+        As ``load_experiment``.
+    """
     problems: list[str] = []
     mode = document.get("mode")
     known = ["mode", *_TABLES, "cantilever", *_OPTIONAL_TABLES]
