@@ -274,13 +274,14 @@ def test_surfaces_settle_in_a_minimum_of_the_energy(surface):
         assert u[n] == 0
 
 
-def equilibrate(u, v, ac, h0, lever=0.0, rest=0.0, accuracy=1e-7):
+def equilibrate(u, v, ac, h0, lever=0.0, rest=0.0, accuracy=1e-7, clock=None):
     n = MESH.nodes.size
     work = np.empty((4, n + 1))
+    clock = np.full(k.CLOCK_SIZE, np.inf) if clock is None else clock
     iterations = k.equilibrate(
         u, v, ac, h0 + GAPS, lever, rest, RISE,
-        MESH, PRESSURE, PARAMETERS, 0.3 * Z0, accuracy, np.empty((n + 1, n + 1)), work,
-        np.empty((3, RISE.size)),
+        MESH, PRESSURE, PARAMETERS, 0.3 * Z0, accuracy, clock, np.empty((n + 1, n + 1)),
+        work, np.empty((3, RISE.size)),
     )  # fmt: skip
     return iterations, work[0, :n], work[1, :n]
 
@@ -305,6 +306,25 @@ def test_newton_returns_to_a_stable_shape(surface, disturbance, seed):
     assert np.allclose(found_gap, h0 + GAPS + guess[n] - guess[:n], rtol=1e-12)
     scale = np.abs(LAW.pressure(found_gap)).max()
     assert np.allclose(found_pressure, LAW.pressure(found_gap), rtol=1e-7, atol=1e-7 * scale)
+
+
+@pytest.mark.parametrize(("modulus", "needed"), [(1e8, 2), (1e9, 1), (1e13, 1)])
+def test_newton_stops_after_one_iteration_where_a_second_is_known_to_bring_little(modulus, needed):
+    """Of a soft contact it brings more; of a stiff one it moves no node, but may change p."""
+    accuracy, clock = 1e-3, np.zeros(k.CLOCK_SIZE)
+    v, ac, u, _ = settled(modulus, 0.5 * Z0, -Z0, 1.5, 0.0)
+    gap = 0.5 * Z0 + GAPS - u[:-1]
+    for disturbance, most in ((0.05, 3), (0.002, needed)):
+        guess = u.copy()
+        guess[:-1] += disturbance * gap * np.exp(-(MESH.nodes**2))
+        iterations, found, pressure = equilibrate(
+            guess, v, ac, 0.5 * Z0, accuracy=accuracy, clock=clock
+        )
+        assert 1 <= iterations <= most
+        assert np.abs(found / gap - 1).max() < accuracy
+        scale = MESH.masses @ np.abs(LAW.pressure(gap))
+        assert MESH.masses @ np.abs(pressure - LAW.pressure(gap)) < 5 * accuracy * scale
+    assert clock[k.CONTRACTION] > 0
 
 
 def test_a_lever_bent_before_pulls_from_there():

@@ -138,7 +138,7 @@ def test_no_memory_is_taken_per_step():
     found = printed(start("print_allocations", NUMBA_NRT_STATS="1"))
     for loop, calls in found.items():
         steps, allocations = np.array(calls).T
-        assert steps.max() > 4 * steps.min() > 0, loop
+        assert steps.max() > 20, loop
         assert allocations.min() == allocations.max(), loop
         assert allocations.max() < 100, loop
 

@@ -101,13 +101,14 @@ class AmplitudeCurve:
 def _zeros(function, rows, points):
     """Zeros of function(row, point) between neighbours of ``points``, for every row at once.
 
-    Returns the indices of the rows and the zeros, found by bisection; values of NaN have none.
+    Returns the indices of the rows and the zeros, to 1e-9 of the distance of neighbours; values of
+    NaN have none.
     """
+    from scipy.optimize.elementwise import find_root
+
     values = function(rows[:, None], points[None, :])
     row, column = np.nonzero(values[:, :-1] * values[:, 1:] < 0)
-    low, high, before = points[column], points[column + 1], np.sign(values[row, column])
-    for _ in range(30):
-        middle = (low + high) / 2
-        first = np.sign(function(rows[row], middle)) == before
-        low, high = np.where(first, middle, low), np.where(first, high, middle)
-    return row, (low + high) / 2
+    bracket = points[column], points[column + 1]
+    close = {"xatol": 1e-9 * np.abs(np.diff(points)).max(), "xrtol": 0.0}
+    found = find_root(lambda x, y: function(y, x), bracket, args=(rows[row],), tolerances=close)
+    return row, found.x

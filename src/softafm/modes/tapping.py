@@ -85,7 +85,7 @@ def tap_observables(contact, motion, history) -> dict[str, tuple]:
 
     virial = each_cycle(lambda t: motion.height(t) - motion.mean_height) / period
     dissipation = -each_cycle(motion.velocity)
-    start = tops[-2]
+    start, stop = tops[-2], tops[-1]
     last = history.time >= start
     force = history.force
     axis_gap = history.tip_height - history.axis_deformation
@@ -98,13 +98,13 @@ def tap_observables(contact, motion, history) -> dict[str, tuple]:
         "force_max": ((), history.extreme(force, 1, start)),
         "force_min": ((), history.extreme(force, -1, start)),
         "force_min_approach": ((), history.extreme(force, -1, start, start + period / 2)),
-        "force_mean": ((), history.integrate(force, np.ones_like, start) / period),
+        "force_mean": ((), history.integrate(force, np.ones_like, start, stop) / period),
         "contact_time": (
             (),
             time_below(history.time[last], axis_gap[last], contact.edge_gap),
         ),
         "indentation": ((), max(0.0, -history.axis_deformation[last].min())),
-        "viscous_loss": ((), history.integrate(history.viscous_power, np.ones_like, start)),
+        "viscous_loss": ((), history.integrate(history.viscous_power, np.ones_like, start, stop)),
     }
 
 

@@ -17,7 +17,7 @@ All of it stands in one file because numba's disk cache only notices changes of 
 function is in.
 """
 
-from math import asinh, exp, floor, log, pi
+from math import asinh, exp, floor, inf, log, pi
 from typing import NamedTuple
 
 import numpy as np
@@ -41,13 +41,15 @@ DEFORMATION, EARLIER, EARLIEST, LOAD_EARLIER, LOAD, MEMORY = range(6)
 # Entries of `clock`: the instant, the step to try, the last two steps; radii of the frames of the
 # last three shapes; contact-edge radius, now and before; gap on the axis; the last three forces and
 # the largest so far; the number of past shapes fit for extrapolation; attempted steps and
-# Newton iterations so far; the last three deflections of the lever.
+# Newton iterations so far; the last three deflections of the lever; how large a second correction
+# of Newton's was for the square of the first, 0 if that is not known, inf if it is no guide.
 TIME, STEP, LAST, BEFORE = range(4)
 FRAME, FRAME_EARLIER, FRAME_EARLIEST, EDGE, EDGE_EARLIER, AXIS_GAP = range(4, 10)
 FORCE, FORCE_EARLIER, FORCE_EARLIEST, FORCE_SCALE = range(10, 14)
 HISTORY, TRIES, NEWTONS = range(14, 17)
 DEFLECTION, DEFLECTION_EARLIER, DEFLECTION_EARLIEST = range(17, 20)
-CLOCK_SIZE = 20
+CONTRACTION = 20
+CLOCK_SIZE = 21
 
 # Columns of a record. COARSENESS is the node spacing at the edge over the width of the cohesive
 # zone; JUMP the energy released if an elastic jump led there, else 0.
@@ -56,6 +58,9 @@ RECORD_WIDTH = 9
 
 # The smallest gap of a sound surface, in gaps at the contact edge.
 CLOSEST = 0.1
+
+# By how much a contraction of Newton's counts as larger with every step that trusts it.
+_FORGOTTEN = 1.2
 
 # Entry of the law's parameters: where its gaps are counted from. The solver's gaps are above it.
 ORIGIN = 0
@@ -259,14 +264,14 @@ def beyond_mesh(gap, rise, mesh, law, parameters, work):
 @njit(
     int64(
         _V, _V, float64, _V, float64, float64, _V,
-        MESH, pointer(PRESSURE), _V, float64, float64, _M, _M, _M,
+        MESH, pointer(PRESSURE), _V, float64, float64, _V, _M, _M, _M,
     ),
     cache=True,
     fastmath=_FAST,
 )  # fmt: skip
 def equilibrate(
     u, v, ac, standoff, lever, rest, rise,
-    mesh, law, parameters, smallest_gap, accuracy, hessian, work, far_work,
+    mesh, law, parameters, smallest_gap, accuracy, clock, hessian, work, far_work,
 ):  # fmt: skip
     """Newton's method for u = v − c K p(standoff + q − u) from a good guess, in place.
 
@@ -316,10 +321,21 @@ def equilibrate(
         for i in range(n):
             u[i] += change[i]
             gap[i] = standoff[i] + u[n] - u[i]
+        for i in range(n):
+            pressure[i] += slope[i] * (change[n] - change[i])
+        if iteration == 2 and clock[CONTRACTION] < inf:
+            clock[CONTRACTION] = largest / (previous * previous)
         if largest < accuracy:
-            for i in range(n):
-                pressure[i] += slope[i] * (change[n] - change[i])
             return iteration
+        if iteration == 1 and 0.0 < clock[CONTRACTION] * largest * largest < 0.1 * accuracy:
+            law(gap, parameters, change, slope, n)
+            missed, whole = 0.0, 0.0
+            for i in range(n):
+                missed += mesh.masses[i] * abs(change[i] - pressure[i])
+                whole += mesh.masses[i] * abs(change[i])
+            if missed < 0.1 * accuracy * whole:
+                clock[CONTRACTION] *= _FORGOTTEN
+                return 1
         previous = largest
     return -8
 
@@ -665,7 +681,7 @@ def advance(
         iterations = equilibrate(
             u, v, frame * c, standoff, lever, rest, rise,
             mesh, law, parameters.law,
-            CLOSEST * controls.edge_gap, controls.newton, hessian, newton_work, far_work,
+            CLOSEST * controls.edge_gap, controls.newton, clock, hessian, newton_work, far_work,
         )  # fmt: skip
         clock[NEWTONS] += abs(iterations)
 

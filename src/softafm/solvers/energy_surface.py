@@ -12,6 +12,9 @@ EXTENT = 8.0
 """Radius of every mesh, in contact radii."""
 
 _COARSEST_SPACING = 0.3
+_SLACK = 3.0
+"""Fast Tabor number from which on the edge of a contact yields to small errors, such as those of a
+mesh that coarsens rapidly away from it."""
 _POINTS, _WEIGHTS = np.polynomial.legendre.leggauss(16)
 
 
@@ -47,8 +50,11 @@ class Surface:
         self.open_frame = contact.open_radius
         self.accuracy = 1e-3 * strictness
         sharpness = contact.surface.sharpness if contact.adhesive else 1.0
-        self.target = 0.2 * strictness**0.2 / max(1.0, sharpness)
-        self.growth = 0.25 * min(1.0, strictness**0.1)
+        tabor = contact.tabor_instantaneous if contact.adhesive else 0.0
+        slack = max(1.0, tabor / _SLACK)
+        finer = min(2.0, max(1.0, slack / 4))
+        self.target = 0.2 * strictness**0.2 / max(1.0, sharpness) / finer
+        self.growth = max(0.2, 0.3 * slack**-0.45) * min(1.0, strictness**0.17)
         self.finest_level = max(0, ceil(log2(_COARSEST_SPACING / finest_spacing)))
         self.level = self.first_level = self._level_for(0.4 * contact.open_width / self.open_frame)
         self.mesh = self._mesh(self.level)
@@ -59,6 +65,7 @@ class Surface:
         self.fields = np.zeros((k.MEMORY + modes, self.mesh.nodes.size))
         self.clock = np.zeros(k.CLOCK_SIZE)
         self.clock[k.TIME] = breaks[0]
+        self.clock[k.CONTRACTION] = 0.0 if slack < 2 else np.inf
         first = contact.contact_radius(float(motion.height(breaks[0])))
         self.clock[k.FRAME] = k.frame_for(first, self.open_frame)
         self.background = k.Background(np.empty((0, 0)), 1.0, 1.0, 1.0, 1.0, 0.0)

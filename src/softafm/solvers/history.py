@@ -7,8 +7,6 @@ import numpy as np
 
 _POINTS, _WEIGHTS = np.polynomial.legendre.leggauss(4)
 _MOST_UNEVEN = 4.0
-_LONGEST = 10.0
-"""How many times as long as one beside it an interval may be for a cubic to cross it."""
 
 
 @dataclass(frozen=True)
@@ -64,6 +62,8 @@ class History:
 
     def _quadrature(self, start, stop) -> list[tuple]:
         """Points and weights of every piece, and the cubics there: kept for the next integral."""
+        from softafm.solvers.cubics import cubics
+
         key = start, stop
         if key not in self._quadratures:
             rules = self._quadratures[key] = []
@@ -73,7 +73,11 @@ class History:
                 if edges.size > 1:
                     middle, half = (edges[1:] + edges[:-1]) / 2, np.diff(edges)[:, None] / 2
                     at = middle[:, None] + half * _POINTS
-                    rules.append((piece, at, half * _WEIGHTS, *cubics(time, at)))
+                    count = min(4, time.size)
+                    near = np.empty((len(at), count), int)
+                    basis = np.empty((*at.shape, count))
+                    cubics(time, at, near, basis)
+                    rules.append((piece, at, half * _WEIGHTS, near, basis))
         return self._quadratures[key]
 
     def extreme(self, values, sign: int, start=-np.inf, stop=np.inf) -> float:
@@ -101,31 +105,3 @@ class History:
                     value -= slope**2 / (4 * curvature)
             best = max(best, value)
         return sign * float(best)
-
-
-def cubics(time, at):
-    """Instants near ``at`` (m, points), each row within one interval of ``time`` (n,).
-
-    Returns their indices (m, 4) and the values (m, points, 4) of Lagrange's polynomials through
-    them, of four instants, or all if there are fewer; of two where intervals are very uneven.
-    """
-    count = min(4, time.size)
-    right = np.searchsorted(time, at.mean(axis=1))
-    first = np.clip(right - 2, 0, time.size - count)
-    near = first[:, None] + np.arange(count)
-    instants = time[near].T
-    offsets = at - instants[:, :, None]
-    terms = np.empty(offsets.shape)
-    for j in range(count):
-        others = [other for other in range(count) if other != j]
-        apart = np.prod(instants[j] - instants[others], axis=0)
-        terms[j] = np.prod(offsets[others], axis=0) / apart[:, None]
-    basis = np.ascontiguousarray(np.moveaxis(terms, 0, -1))
-    # A cubic runs wild across an interval that is much longer than one beside it: a line does not.
-    length = time[right] - time[right - 1]
-    for row in np.flatnonzero(length > _LONGEST * np.diff(instants, axis=0).min(axis=0)):
-        part = (at[row] - time[right[row] - 1]) / length[row]
-        basis[row] = 0
-        basis[row, :, right[row] - 1 - first[row]] = 1 - part
-        basis[row, :, right[row] - first[row]] = part
-    return near, basis
