@@ -308,13 +308,13 @@ def test_newton_returns_to_a_stable_shape(surface, disturbance, seed):
     assert np.allclose(found_pressure, LAW.pressure(found_gap), rtol=1e-7, atol=1e-7 * scale)
 
 
-@pytest.mark.parametrize(("modulus", "needed"), [(1e8, 2), (1e9, 1), (1e13, 1)])
+@pytest.mark.parametrize(("modulus", "needed"), [(1e8, 2), (1e10, 1), (1e13, 1)])
 def test_newton_stops_after_one_iteration_where_a_second_is_known_to_bring_little(modulus, needed):
     """Of a soft contact it brings more; of a stiff one it moves no node, but may change p."""
     accuracy, clock = 1e-3, np.zeros(k.CLOCK_SIZE)
     v, ac, u, _ = settled(modulus, 0.5 * Z0, -Z0, 1.5, 0.0)
     gap = 0.5 * Z0 + GAPS - u[:-1]
-    for disturbance, most in ((0.05, 3), (0.002, needed)):
+    for disturbance, most in ((0.05, 3), (0.004, needed)):
         guess = u.copy()
         guess[:-1] += disturbance * gap * np.exp(-(MESH.nodes**2))
         iterations, found, pressure = equilibrate(
