@@ -396,7 +396,7 @@ def settle(u, v, ac, standoff, lever, rise, mesh, law, potential, parameters, ac
                     downhill += change[i] * gradient[i]
                 if largest < 0.4:
                     break
-            shift = max(4.0 * shift, 1e-4 * steepest)
+            shift = max(8.0 * shift, 1e-10 * steepest)
         if shift == 0.0 and largest < accuracy:
             for i in range(n + 1):
                 u[i] += change[i]
@@ -418,7 +418,7 @@ def settle(u, v, ac, standoff, lever, rise, mesh, law, potential, parameters, ac
             length *= 0.5
         for i in range(n + 1):
             u[i] += length * change[i]
-        shift = 0.25 * shift if shift > 4e-4 * steepest else 0.0
+        shift = 0.25 * shift if shift > 4e-10 * steepest else 0.0
     return -1
 
 
