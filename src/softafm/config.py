@@ -113,7 +113,7 @@ def load_experiment(path: str | Path, overrides: Sequence[str] = ()) -> Experime
     path = Path(path)
     document = _parse(path)
     for override in overrides:
-        _override(document, override)
+        set_value(document, override)
     return experiment_from(document, path.parent)
 
 
@@ -162,8 +162,14 @@ def document_from(text: str, name: str) -> dict[str, Any]:
         raise ConfigError([f"{name}: is not valid TOML: {reason}"]) from None
 
 
-def _override(document: dict[str, Any], override: str) -> None:
-    """Set one value of the document, in place."""
+def set_value(document: dict[str, Any], override: str) -> None:
+    """Set one value of a document by an override such as ``"sample.E0=3GPa"``, in place.
+
+    Raises
+    ------
+    ConfigError
+        If it is not of this form, or a value is where a table would be.
+    """
     key, equals, text = override.partition("=")
     names = [name.strip() for name in key.split(".")]
     if not equals or not all(names):
@@ -176,10 +182,10 @@ def _override(document: dict[str, Any], override: str) -> None:
         if not isinstance(table, dict):
             parent = ".".join(names[:depth])
             raise ConfigError([f"override {shown(override)}: {parent} is a value, not a table"])
-    table[names[-1]] = _override_value(text.strip())
+    table[names[-1]] = value_of(text.strip())
 
 
-def _override_value(text: str) -> Any:
+def value_of(text: str) -> Any:
     """Read a number, flag or list as in TOML; anything else is text that needs no quotes."""
     try:
         parsed = tomllib.loads(f"value = {text}")

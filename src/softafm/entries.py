@@ -1,6 +1,7 @@
 """How values are written in an experiment file: types that read text, units and lists."""
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
@@ -13,12 +14,32 @@ from softafm.refusals import one_of
 _MOST_RATIOS = 1000
 
 
+@dataclass(frozen=True)
+class Input:
+    """What a form needs to know to ask for a value."""
+
+    kind: Literal["quantity", "number", "word", "flag", "choice", "list", "file", "tables"]
+    example: str = ""
+    choices: tuple[str, ...] = ()
+    unit: str = ""
+
+
 def _read(kind: units.Kind) -> BeforeValidator:
     return BeforeValidator(lambda written: units.read_quantity(written, kind))
 
 
-def _described(kind: units.Kind, prefix: str = "") -> Any:
-    return Field(description=prefix + kind.valid)
+def _described(read: Callable[..., Any], valid: str, asked: Input) -> tuple[Any, ...]:
+    return BeforeValidator(read), Field(description=valid), asked
+
+
+def _quantity(kind: units.Kind) -> tuple[Any, ...]:
+    asked = Input("quantity", kind.example, unit=kind.si)
+    return _read(kind), Field(description=kind.valid), asked
+
+
+def _quantities(kind: units.Kind) -> tuple[Any, ...]:
+    asked = Input("list", kind.example, unit=kind.si)
+    return _described(_list, f"a list, each {kind.valid}", asked)
 
 
 def _number(written: Any) -> float:
@@ -87,15 +108,15 @@ def _flag(written: Any) -> bool:
     return written
 
 
-def choice_of(choices: Mapping[str, Any]) -> BeforeValidator:
-    """Read the name of a choice, and return what it names."""
+def choice_of(choices: Mapping[str, Any]) -> Any:
+    """Return the type that reads the name of a choice as what it names."""
 
     def read(written: Any) -> Any:
         if not isinstance(written, str) or written not in choices:
             raise ValueError(f"must be {one_of(list(choices))}")
         return choices[written]
 
-    return BeforeValidator(read)
+    return Annotated[Any, BeforeValidator(read), Input("choice", choices=tuple(choices))]
 
 
 def _list(written: Any) -> Any:
@@ -111,42 +132,37 @@ def _file(written: Any, info: ValidationInfo) -> Path:
     return folder / written
 
 
-Length = Annotated[float, _read(units.LENGTH), _described(units.LENGTH)]
-Time = Annotated[float, _read(units.TIME), _described(units.TIME)]
-Speed = Annotated[float, _read(units.SPEED), _described(units.SPEED)]
-Frequency = Annotated[float, _read(units.FREQUENCY), _described(units.FREQUENCY)]
-Modulus = Annotated[float, _read(units.MODULUS), _described(units.MODULUS)]
-Newtons = Annotated[float, _read(units.FORCE), _described(units.FORCE)]
-Stiffness = Annotated[float, _read(units.STIFFNESS), _described(units.STIFFNESS)]
-Joules = Annotated[float, _read(units.ENERGY), _described(units.ENERGY)]
-JoulesPerArea = Annotated[float, _read(units.ENERGY_PER_AREA), _described(units.ENERGY_PER_AREA)]
-Pressure = Annotated[float, _read(units.PRESSURE), _described(units.PRESSURE)]
-Angle = Annotated[float, _read(units.ANGLE), _described(units.ANGLE)]
-Voltage = Annotated[float, _read(units.VOLTAGE), _described(units.VOLTAGE)]
-Temperature = Annotated[float, _read(units.TEMPERATURE), _described(units.TEMPERATURE)]
-Viscosity = Annotated[float, _read(units.VISCOSITY), _described(units.VISCOSITY)]
-Concentration = Annotated[float, _read(units.CONCENTRATION), _described(units.CONCENTRATION)]
-Compliances = Annotated[
-    tuple[Annotated[float, _read(units.COMPLIANCE)], ...],
-    BeforeValidator(_list),
-    _described(units.COMPLIANCE, "a list, each "),
-]
-Moduli = Annotated[
-    tuple[Modulus, ...], BeforeValidator(_list), _described(units.MODULUS, "a list, each ")
-]
-Times = Annotated[tuple[Time, ...], BeforeValidator(_list), _described(units.TIME, "a list, each ")]
-Number = Annotated[float, BeforeValidator(_number), Field(description="a number, such as 0.49")]
-Numbers = Annotated[tuple[Number, ...], BeforeValidator(_list)]
+Length = Annotated[float, *_quantity(units.LENGTH)]
+Time = Annotated[float, *_quantity(units.TIME)]
+Speed = Annotated[float, *_quantity(units.SPEED)]
+Frequency = Annotated[float, *_quantity(units.FREQUENCY)]
+Modulus = Annotated[float, *_quantity(units.MODULUS)]
+Newtons = Annotated[float, *_quantity(units.FORCE)]
+Stiffness = Annotated[float, *_quantity(units.STIFFNESS)]
+Joules = Annotated[float, *_quantity(units.ENERGY)]
+JoulesPerArea = Annotated[float, *_quantity(units.ENERGY_PER_AREA)]
+Pressure = Annotated[float, *_quantity(units.PRESSURE)]
+Angle = Annotated[float, *_quantity(units.ANGLE)]
+Voltage = Annotated[float, *_quantity(units.VOLTAGE)]
+Temperature = Annotated[float, *_quantity(units.TEMPERATURE)]
+Viscosity = Annotated[float, *_quantity(units.VISCOSITY)]
+Concentration = Annotated[float, *_quantity(units.CONCENTRATION)]
+Compliance = Annotated[float, *_quantity(units.COMPLIANCE)]
+Compliances = Annotated[tuple[Compliance, ...], *_quantities(units.COMPLIANCE)]
+Moduli = Annotated[tuple[Modulus, ...], *_quantities(units.MODULUS)]
+Times = Annotated[tuple[Time, ...], *_quantities(units.TIME)]
+Number = Annotated[float, *_described(_number, "a number, such as 0.49", Input("number"))]
+Numbers = Annotated[tuple[Number, ...], BeforeValidator(_list), Input("list", "0.5")]
 QualityFactor = Annotated[
-    float, BeforeValidator(_number), Field(description="a number, such as 430")
+    float, *_described(_number, "a number, such as 430", Input("number", "430"))
 ]
-Ratio = Annotated[float, BeforeValidator(_ratio)]
-Ratios = Annotated[tuple[Ratio, ...], BeforeValidator(_ratios)]
-Points = Annotated[int, BeforeValidator(_points)]
-Cycles = Annotated[int | Literal["steady"], BeforeValidator(_cycles)]
-Flag = Annotated[bool, BeforeValidator(_flag)]
-Tolerance = Annotated[float, BeforeValidator(_tolerance)]
-Tabor = Annotated[float, BeforeValidator(_tabor)]
-File = Annotated[Path, BeforeValidator(_file), Field(description="the name of a CSV file")]
-Whole = Annotated[Any, BeforeValidator(_whole)]
-Entries = Annotated[tuple[Any, ...], BeforeValidator(_list)]
+Ratio = Annotated[float, BeforeValidator(_ratio), Input("number", "0.9")]
+Ratios = Annotated[tuple[Ratio, ...], BeforeValidator(_ratios), Input("list", "0.9")]
+Points = Annotated[int, BeforeValidator(_points), Input("number", "31")]
+Cycles = Annotated[int | Literal["steady"], BeforeValidator(_cycles), Input("word", "steady")]
+Flag = Annotated[bool, BeforeValidator(_flag), Input("flag")]
+Tolerance = Annotated[float, BeforeValidator(_tolerance), Input("number", "0.01")]
+Tabor = Annotated[float, BeforeValidator(_tabor), Input("number", "8")]
+File = Annotated[Path, *_described(_file, "the name of a CSV file", Input("file", "approach.csv"))]
+Whole = Annotated[Any, BeforeValidator(_whole), Input("number", "100")]
+Entries = Annotated[tuple[Any, ...], BeforeValidator(_list), Input("tables")]

@@ -15,7 +15,19 @@ _COLUMN = re.compile(r"\s*(\w+)\s*[(\[](.*)[)\]]\s*")
 
 
 def read_trajectory(path: Path) -> Trajectory:
-    """Read columns ``time`` and ``height`` of a CSV file; see ``read_columns``."""
+    """Read a motion from columns ``time`` and ``height`` of a CSV file.
+
+    Parameters
+    ----------
+    path
+        CSV file whose header names the units, for example ``time (us),height (nm)``; other
+        columns are ignored.
+
+    Raises
+    ------
+    ValueError
+        As ``read_columns``, and as ``Trajectory``.
+    """
     time, height = read_columns(path, {"time": TIME, "height": LENGTH}, "time (us),height (nm)")
     return Trajectory(time, height)
 

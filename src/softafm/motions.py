@@ -58,9 +58,16 @@ class Triangle:
     def from_frequency(
         cls, mean_height: float, amplitude: float, frequency: float, **options
     ) -> "Triangle":
-        """Build one period of a triangular wave, mean_height ± amplitude (m), of ``frequency``, Hz.
+        """Build one period of a triangular wave, of speed 4·amplitude·frequency.
 
-        Its speed is 4·amplitude·frequency. ``options`` are ``dwell`` and ``setpoint_force``.
+        Parameters
+        ----------
+        mean_height, amplitude
+            Mean height and amplitude, m.
+        frequency
+            Frequency, Hz.
+        options
+            ``dwell`` and ``setpoint_force``.
         """
         mean = finite("mean_height", mean_height, "m")
         half = positive("amplitude", amplitude, "m")

@@ -1,6 +1,6 @@
 """Static figures of results, one kind for each mode, drawn without pyplot or any global state."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 
 import numpy as np
 import xarray as xr
@@ -22,17 +22,10 @@ from softafm.drawing import (
     stroke_entries,
     tidy,
 )
+from softafm.histories import AXES, felt, moved, strokes
 from softafm.sweep_drawing import approach_curve
 
 __all__ = ["COLOURS", "plot"]
-
-AXES = {
-    "time": ("Time", "s"),
-    "tip_height": ("Tip height", "m"),
-    "base_height": ("Base height", "m"),
-    "deflection": ("Deflection", "m"),
-    "force": ("Force on the tip", "N"),
-}
 
 
 def plot(
@@ -133,7 +126,7 @@ def _draw(ax: Axes, runs: list[xr.Dataset], abscissa: str, ordinate: str = "forc
     for index, run in enumerate(runs):
         x, y = x_scale * run[abscissa].values, y_scale * run[ordinate].values
         approach_colour, retract_colour = colours(index, len(runs))
-        for stroke, falling in _strokes(run[_moved(run)].values):
+        for stroke, falling in strokes(run[moved(run)].values):
             ax.plot(
                 x[stroke],
                 y[stroke],
@@ -154,11 +147,6 @@ def _draw(ax: Axes, runs: list[xr.Dataset], abscissa: str, ordinate: str = "forc
     tidy(ax)
 
 
-def _moved(run: xr.Dataset) -> str:
-    """What follows the motion: the base of a lever, or else the tip."""
-    return "base_height" if "base_height" in run else "tip_height"
-
-
 def _stroke_entries(runs: list[xr.Dataset]) -> list[Line2D]:
     """Legend entries of strokes by line style, and of elastic jumps if there are any."""
     entries = stroke_entries(len(runs))
@@ -176,37 +164,11 @@ def _summary(run: xr.Dataset) -> str:
     )
 
 
-def _strokes(height: np.ndarray) -> Iterator[tuple[slice, bool]]:
-    """Yield the strokes of a motion as (samples, whether the tip falls).
-
-    A stroke ends at its extreme height once the motion has reversed by a fiftieth of its range:
-    the noise of a measured trajectory makes none.
-    """
-    reversal = np.ptp(height) / 50
-    away = np.flatnonzero(np.abs(height - height[0]) > reversal)
-    falling = bool(away.size == 0 or height[away[0]] < height[0])
-    start = extreme = 0
-    for i, now in enumerate(height):
-        onward = height[extreme] - now if falling else now - height[extreme]
-        if onward >= 0:
-            extreme = i
-        elif -onward > reversal:
-            yield slice(start, extreme + 1), falling
-            start, extreme, falling = extreme, i, not falling
-    yield slice(start, height.size), falling
-
-
 def _crop(ax: Axes, runs: list[xr.Dataset], *variables: str) -> None:
     """Show, with a margin, only where the force exceeds a hundredth of its largest."""
-    felt = []
-    for run in runs:
-        strength = np.abs(run["force"].values)
-        where = strength >= 0.01 * strength.max()
-        felt += [run[variable].values[where] for variable in variables]
-    low, high = float(np.min(np.concatenate(felt))), float(np.max(np.concatenate(felt)))
-    margin = 0.1 * (high - low) or 0.1 * (abs(high) or 1.0)
+    low, high = felt(runs, *variables)
     scale = _scale(runs, variables[0])
-    ax.set_xlim(scale * (low - margin), scale * (high + margin))
+    ax.set_xlim(scale * low, scale * high)
 
 
 def _duration(runs: list[xr.Dataset]) -> str:

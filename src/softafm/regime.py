@@ -1,7 +1,7 @@
-"""A table for people: what an experiment is before it runs, and what it will cost."""
+"""What an experiment is before it runs, and what it will cost: numbers, and a table for people."""
 
 from math import isfinite
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 from rich.table import Table
@@ -30,92 +30,137 @@ _FEW = 4
 """Creep times up to which each has a row of its own."""
 
 
+class Row(NamedTuple):
+    """A number with its unit, as text, and what it means."""
+
+    name: str
+    value: str
+    words: str
+
+
+class _Case(NamedTuple):
+    """What comes in touch, and how: of an approach curve its deepest tap."""
+
+    contact: "Contact"
+    motion: Any
+    drive: "Drive | None"
+
+
 def regime(experiment: "Experiment") -> Table:
     """Return a table of the numbers that say how a contact will behave and what it will cost."""
-    contact = regularised(experiment.contact, experiment.regularise)
-    motion = experiment.motion
-    tapping = experiment.mode == "approach-curve"
-    if tapping:
-        drive, frequency = drive_of(
-            experiment.cantilever, motion.free_amplitude, motion.drive_frequency
-        )
-        amplitudes = motion.free_amplitude * np.array(motion.amplitude_ratio)
-        motion = deepest_tap(contact, drive, frequency, amplitudes)
+    table = table_of(f"{experiment.mode}, before any run")
+    for row in rows(experiment):
+        table.add_row(*row)
+    return table
+
+
+def rows(experiment: "Experiment") -> list[Row]:
+    """Return the rows of that table."""
+    case = _case(experiment)
+    contact, motion, drive = case
     first, last = float(motion.breaks[0]), float(motion.breaks[-1])
     lowest = lowest_height(motion)
     radius = contact.contact_radius(lowest)
 
-    table = table_of(f"{experiment.mode}, before any run")
-    _add_tip(table, contact)
-    _add_adhesion(table, contact)
-    _add_regularisation(table, experiment, contact)
-    carried = experiment.cantilever is not None and not tapping
+    found: list[Row] = []
+    _add_tip(found, contact)
+    _add_adhesion(found, contact)
+    _add_regularisation(found, experiment, contact)
+    carried = experiment.cantilever is not None and drive is None
     where = "above the undeformed surface" + (", lever unbent" if carried else "")
-    where = "of a tap: Hertz against the drive" if tapping else where
-    table.add_row("lowest tip height", readable(lowest, "m"), where)
+    where = "of a tap: Hertz against the drive" if drive else where
+    found.append(Row("lowest tip height", readable(lowest, "m"), where))
     theory = "JKR" if contact.adhesive else "without adhesion"
     expected = f"{theory}, {_slow(contact)}, at the lowest height"
     words = expected if radius else "none is expected to last"
-    table.add_row("contact radius", readable(radius, "m"), words)
+    found.append(Row("contact radius", readable(radius, "m"), words))
     if carried:
-        _add_lever(table, contact, experiment.cantilever.stiffness, radius)
-    if tapping:
-        _add_drive(table, experiment, drive)
-    whole = "tap" if tapping else "motion"
-    table.add_row(f"time of the {whole}", readable(last - first, "s"), "")
-    _add_sample(table, contact, last - first, whole)
-    solver: Any = Energy() if experiment.solver is None else experiment.solver
-    if solver.adaptive:
-        crossed = cohesive_lengths_crossed(contact, motion)
-        reason = f"the edge crosses at most {crossed:.2g} cohesive lengths"
-        reason = reason if contact.adhesive else "no tension zone to resolve"
-    else:
+        _add_lever(found, contact, experiment.cantilever.stiffness, radius)
+    if drive:
+        _add_drive(found, drive)
+    whole = "tap" if drive else "motion"
+    found.append(Row(f"time of the {whole}", readable(last - first, "s"), ""))
+    _add_sample(found, contact, last - first, whole)
+    cost = _cost_in_words(_seconds(experiment, case))
+    found.append(Row("expected cost", cost, _cost_of(experiment, case)))
+    return found
+
+
+def expected_seconds(experiment: "Experiment") -> float:
+    """Return the order of magnitude of a run, s on one core."""
+    return _seconds(experiment, _case(experiment))
+
+
+def _case(experiment: "Experiment") -> _Case:
+    contact = regularised(experiment.contact, experiment.regularise)
+    motion = experiment.motion
+    if experiment.mode != "approach-curve":
+        return _Case(contact, motion, None)
+    drive, frequency = drive_of(
+        experiment.cantilever, motion.free_amplitude, motion.drive_frequency
+    )
+    amplitudes = motion.free_amplitude * np.array(motion.amplitude_ratio)
+    return _Case(contact, deepest_tap(contact, drive, frequency, amplitudes), drive)
+
+
+def _solver(experiment: "Experiment") -> Any:
+    return Energy() if experiment.solver is None else experiment.solver
+
+
+def _seconds(experiment: "Experiment", case: _Case) -> float:
+    runs = (_TAPS if case.drive else 1) * (_CHECKED if experiment.check else 1)
+    return runs * _solver(experiment).expected_seconds(case.contact, case.motion)
+
+
+def _cost_of(experiment: "Experiment", case: _Case) -> str:
+    """Tell what a run costs its time for."""
+    solver = _solver(experiment)
+    if not solver.adaptive:
         reason = f"{solver.steps} steps of {solver.nodes} nodes"
-    runs = _TAPS if tapping else 1
-    reason = f"some {_TAPS} taps; {reason}" if tapping else reason
-    if experiment.check:
-        runs *= _CHECKED
-        reason += "; with a check"
-    cost = _cost_in_words(runs * solver.expected_seconds(contact, motion))
-    table.add_row("expected cost", cost, reason)
-    return table
+    elif case.contact.adhesive:
+        crossed = cohesive_lengths_crossed(case.contact, case.motion)
+        reason = f"the edge crosses at most {crossed:.2g} cohesive lengths"
+    else:
+        reason = "no tension zone to resolve"
+    reason = f"some {_TAPS} taps; {reason}" if case.drive else reason
+    return f"{reason}; with a check" if experiment.check else reason
 
 
-def _add_tip(table: Table, contact: "Contact") -> None:
+def _add_tip(found: list[Row], contact: "Contact") -> None:
     """Tell the radius that counts."""
     name, words = "effective radius", f"of the {contact.tip.kind}, where it is one reach high"
     if isinstance(contact.tip, Paraboloid):
         name, words = "tip radius", contact.tip.kind
-    table.add_row(name, readable(contact.effective_radius, "m"), words)
+    found.append(Row(name, readable(contact.effective_radius, "m"), words))
 
 
-def _add_adhesion(table: Table, contact: "Contact") -> None:
+def _add_adhesion(found: list[Row], contact: "Contact") -> None:
     """Tell how soft the contact is for its adhesion, and how wide the tension zone."""
     law = contact.surface
     work = readable(law.work_of_adhesion, "J/m²")
     if not contact.adhesive:
-        table.add_row("work of adhesion", work, f"{law.kind}: no adhesion")
+        found.append(Row("work of adhesion", work, f"{law.kind}: no adhesion"))
         return
     for when, tabor in (("fast", contact.tabor_instantaneous), ("slow", contact.tabor_relaxed)):
         value = f"{tabor:.3g}" if isfinite(tabor) else _FLOWS
-        table.add_row(f"Tabor number, {when}", value, _tabor_in_words(tabor))
+        found.append(Row(f"Tabor number, {when}", value, _tabor_in_words(tabor)))
     for when, length in (
         ("fast", contact.cohesive_length_instantaneous),
         ("slow", contact.cohesive_length),
     ):
         value = readable(length, "m") if length else _FLOWS
-        table.add_row(f"cohesive length, {when}", value, "tension zone at the edge")
-    table.add_row("work of adhesion", work, f"{law.kind}: per area, to part the surfaces")
+        found.append(Row(f"cohesive length, {when}", value, "tension zone at the edge"))
+    found.append(Row("work of adhesion", work, f"{law.kind}: per area, to part the surfaces"))
 
 
-def _add_regularisation(table: Table, experiment: "Experiment", contact: "Contact") -> None:
+def _add_regularisation(found: list[Row], experiment: "Experiment", contact: "Contact") -> None:
     """Tell what became of a soft contact, or what could."""
     given = experiment.contact
     if experiment.regularise is not None:
         length = contact.surface.range
         words = regularised_in_words(given.tabor_softened, given.surface.range, length)
         words += slowed_in_words(edge_slowed(given, length))
-        table.add_row("range", readable(length, "m"), words)
+        found.append(Row("range", readable(length, "m"), words))
     elif given.tabor_softened > _SOFT:
         length = given.surface.range * given.tabor_softened / _ADVISED
         try:
@@ -125,17 +170,17 @@ def _add_regularisation(table: Table, experiment: "Experiment", contact: "Contac
             words = "is not possible with this law, whose range is {}; one of {} would do"
         words = words.format(readable(given.surface.range, "m"), readable(length, "m"))
         words += slowed_in_words(edge_slowed(given, length))
-        table.add_row("regularise", f"{_ADVISED:g}", words)
+        found.append(Row("regularise", f"{_ADVISED:g}", words))
 
 
-def _add_sample(table: Table, contact: "Contact", duration: float, whole: str) -> None:
+def _add_sample(found: list[Row], contact: "Contact", duration: float, whole: str) -> None:
     """Tell how much the sample softens in the motion (s), and how."""
     sample = contact.sample
     creep = sample.reduced_compliance
     times = creep.retardation_times
     fast, late = (readable(1 / float(sample.creep_compliance(t)), "Pa") for t in (0, duration))
     softer = f"; {late} after the {whole}" if times.size or creep.fluidity else ""
-    table.add_row("Young's modulus", fast, sample.kind + softer)
+    found.append(Row("Young's modulus", fast, sample.kind + softer))
     if isinstance(sample, Represented):
         ends = " to ".join(readable(time, "s") for time in sample.window)
         words = f"to {100 * sample.represented_error:.2g} %, from {ends}"
@@ -143,22 +188,22 @@ def _add_sample(table: Table, contact: "Contact", duration: float, whole: str) -
             words += f"; the {whole} outlasts it: enlarge the window"
         elif duration < sample.window[0]:
             words += f"; the {whole} ends before: shift the window"
-        table.add_row("represented by", _modes(sample.mode_count), words)
+        found.append(Row("represented by", _modes(sample.mode_count), words))
     elif times.size > _FEW:
         share = float(creep.modes @ -np.expm1(-duration / times) / creep.modes.sum())
         ends = f"{readable(times.min(), 's')} to {readable(times.max(), 's')}"
         words = f"{ends}; {share:.2g} of their creep in the {whole}"
-        table.add_row("creep times", _modes(times.size), words)
+        found.append(Row("creep times", _modes(times.size), words))
     else:
         for time in map(float, times):
             words = _creep_in_words(time / duration, whole)
-            table.add_row("creep time", readable(time, "s"), words)
+            found.append(Row("creep time", readable(time, "s"), words))
     if creep.fluidity:
         viscosity = (1 - sample.poisson**2) / creep.fluidity
         shear = viscosity / (2 * (1 + sample.poisson))
         words = f"in tension, {readable(shear, 'Pa')} s in shear; flow without end"
         words = "of the modes, beyond the window" if isinstance(sample, Represented) else words
-        table.add_row("viscosity", f"{readable(viscosity, 'Pa')} s", words)
+        found.append(Row("viscosity", f"{readable(viscosity, 'Pa')} s", words))
 
 
 def _modes(count: int) -> str:
@@ -172,28 +217,28 @@ def _slow(contact: "Contact") -> str:
     return "slow"
 
 
-def _add_lever(table: Table, contact: "Contact", lever: float, radius: float) -> None:
+def _add_lever(found: list[Row], contact: "Contact", lever: float, radius: float) -> None:
     """Compare the lever, N/m, with what pulls it in and with what it presses on."""
-    table.add_row("lever stiffness", readable(lever, "N/m"), "")
+    found.append(Row("lever stiffness", readable(lever, "N/m"), ""))
     attraction = contact.steepest_attraction
     words = "softer, the lever snaps in" if lever < attraction else "the lever is stiffer"
     words = words if contact.surface.attracts else "the law only repels"
-    table.add_row("steepest attraction", readable(attraction, "N/m"), f"undeformed; {words}")
+    found.append(Row("steepest attraction", readable(attraction, "N/m"), f"undeformed; {words}"))
     if radius:
         stiffness = 2 * radius * contact.softened_modulus
         share = stiffness / (stiffness + lever)
         words = f"2·E·a, {_slow(contact)}; lever bends by {share:.0%} of the way"
-        table.add_row("contact stiffness", readable(stiffness, "N/m"), words)
+        found.append(Row("contact stiffness", readable(stiffness, "N/m"), words))
 
 
-def _add_drive(table: Table, experiment: "Experiment", drive: "Drive") -> None:
+def _add_drive(found: list[Row], drive: "Drive") -> None:
     """Tell what drives the lever, and what that can hold and feed."""
-    table.add_row("lever stiffness", readable(drive.stiffness, "N/m"), "")
+    found.append(Row("lever stiffness", readable(drive.stiffness, "N/m"), ""))
     words = f"driven at {drive.detuning:.4g} of the resonance, Q = {drive.quality_factor:.4g}"
-    table.add_row("free amplitude", readable(drive.free_amplitude, "m"), words)
-    table.add_row("force of the drive", readable(drive.force, "N"), "amplitude, on the tip")
+    found.append(Row("free amplitude", readable(drive.free_amplitude, "m"), words))
+    found.append(Row("force of the drive", readable(drive.force, "N"), "amplitude, on the tip"))
     most = readable(drive.most_dissipation, "J")
-    table.add_row("largest dissipation", most, "that the drive can feed, a cycle")
+    found.append(Row("largest dissipation", most, "that the drive can feed, a cycle"))
 
 
 def _tabor_in_words(tabor: float) -> str:

@@ -40,6 +40,11 @@ def pdms(mixing_ratio: float = 10.0) -> Elastic:
     Johnston et al. 2014 report 1.32 to 2.97 MPa in tension, rising with the curing temperature from
     25 to 200 °C. Rubber is incompressible.
 
+    Parameters
+    ----------
+    mixing_ratio
+        Mass of base to that of curing agent, 5 to 33.
+
     Raises
     ------
     ValueError
@@ -76,6 +81,11 @@ def epoxy(poisson: float = 0.35) -> GeneralizedMaxwell:
     """Cured epoxy, from a glass of 0.9 GPa (shear modulus) to a rubber of 4.9 MPa.
 
     24 terms for the shear modulus at half decades from 0.1 µs. The source gives no Poisson's ratio.
+
+    Parameters
+    ----------
+    poisson
+        Poisson's ratio, in (-1, 0.5].
 
     References
     ----------

@@ -105,12 +105,14 @@ class Table(BaseModel):
     """A table of the file: known keys only."""
 
     model_config = ConfigDict(extra="forbid", frozen=True, strict=True)
+    alternatives: ClassVar[tuple[tuple[tuple[str, ...], ...], ...]] = ()
+    """Choices between groups of keys, of each of which one group is to be given, whole."""
 
     def build(self) -> Any:
         """Return the object that the table describes; ValueError if it refuses the values."""
         return self
 
-    def given(self, *alternatives: tuple[str, ...]) -> dict[str, float]:
+    def given(self, alternatives: tuple[tuple[str, ...], ...]) -> dict[str, Any]:
         """Return the one of several groups of keys that the user gave, whole and alone."""
         present = [a for a in alternatives if any(getattr(self, k) is not None for k in a)]
         values = {k: getattr(self, k) for a in present for k in a if getattr(self, k) is not None}
@@ -123,6 +125,10 @@ class Table(BaseModel):
 class StandardLinearSolidSample(Table):
     """``[sample] model = "standard-linear-solid"``: moduli E or G, creep or relaxation time."""
 
+    alternatives = (
+        (("E0", "E_inf"), ("G0", "G_inf")),
+        (("creep_time",), ("relaxation_time",)),
+    )
     E0: Modulus | None = None
     E_inf: Modulus | None = None
     G0: Modulus | None = None
@@ -132,8 +138,7 @@ class StandardLinearSolidSample(Table):
     poisson: Number
 
     def build(self) -> StandardLinearSolid:
-        moduli = self.given(("E0", "E_inf"), ("G0", "G_inf"))
-        time = self.given(("creep_time",), ("relaxation_time",))
+        moduli, time = map(self.given, self.alternatives)
         if "G0" in moduli:
             (duration,) = time.values()
             solid = StandardLinearSolid.from_shear(
@@ -148,6 +153,7 @@ class StandardLinearSolidSample(Table):
 class TriangleMotion(Table):
     """``[motion] shape = "triangle"``: a ramp, or one period of a wave."""
 
+    alternatives = ((("start", "turn", "speed"), ("mean_height", "amplitude", "frequency")),)
     start: Length | None = None
     turn: Length | None = None
     speed: Speed | None = None
@@ -158,8 +164,7 @@ class TriangleMotion(Table):
     setpoint_force: Newtons | None = None
 
     def build(self) -> Triangle:
-        ramp, wave = ("start", "turn", "speed"), ("mean_height", "amplitude", "frequency")
-        given = self.given(ramp, wave)
+        given = self.given(*self.alternatives)
         triangle = Triangle if "start" in given else Triangle.from_frequency
         return triangle(**given, dwell=self.dwell, setpoint_force=self.setpoint_force)
 
@@ -204,8 +209,17 @@ class AmplitudeSweep:
 
 
 class SweepMotion(Table):
-    """``[motion]`` of an approach curve: amplitude ratios, listed or evenly spaced."""
+    """``[motion]`` of an approach curve: amplitude ratios, listed or evenly spaced.
 
+    Parameters
+    ----------
+    first_ratio, last_ratio
+        Largest and smallest amplitude over the free amplitude, each between 0 and 1.
+    points
+        Number of amplitudes, evenly spaced from the first ratio to the last.
+    """
+
+    alternatives = ((("amplitude_ratio",), ("first_ratio", "last_ratio", "points")),)
     free_amplitude: Length
     amplitude_ratio: Ratios | None = None
     first_ratio: Ratio | None = None
@@ -214,7 +228,7 @@ class SweepMotion(Table):
     drive_frequency: Frequency | None = None
 
     def build(self) -> AmplitudeSweep:
-        self.given(("amplitude_ratio",), ("first_ratio", "last_ratio", "points"))
+        self.given(*self.alternatives)
         positive("free_amplitude", self.free_amplitude, "m")
         if self.drive_frequency is not None:
             positive("drive_frequency", self.drive_frequency, "Hz")
@@ -272,7 +286,7 @@ _PLAIN: dict[Any, Any] = {
     float: Number,
     float | None: Number,
     bool: Flag,
-    Stepper: Annotated[Any, choice_of(STEPPERS)],
+    Stepper: choice_of(STEPPERS),
 }
 """How all other parameters are written, by the type that the solver's dataclass declares."""
 
@@ -300,7 +314,7 @@ def _written(name: str, declared: Any) -> Any:
     if name in _WITH_UNIT:
         return _WITH_UNIT[name]
     if get_origin(declared) is Literal:
-        return Annotated[Any, choice_of({choice: choice for choice in get_args(declared)})]
+        return choice_of({choice: choice for choice in get_args(declared)})
     return _PLAIN[declared]
 
 
@@ -315,8 +329,7 @@ class Thing(Table):
             needed, known = _keys_of(constructor)
             if set(needed) <= given.keys() <= set(known):
                 return constructor(**{known[key]: value for key, value in given.items()})
-        common = _needed_by_all(self.constructors)
-        ways = [[k for k in _keys_of(c)[0] if k not in common] for c in self.constructors]
+        common, ways = _needed_by_all(self.constructors), _ways(self.constructors)
         found = ", ".join(key for key in type(self).model_fields if key in given.keys() - common)
         raise ValueError(f"give {', or '.join(map(all_of, ways))}; found {found or 'none of them'}")
 
@@ -328,7 +341,14 @@ def _thing(*constructors: Callable) -> type[Thing]:
     keys: dict[str, Any] = {key: (_KEYS[key], ... if key in needed else None) for key in names}
     table = create_model(constructors[0].__name__, __base__=Thing, **keys)
     table.constructors = constructors
+    table.alternatives = (_ways(constructors),) if len(constructors) > 1 else ()
     return table
+
+
+def _ways(constructors: tuple[Callable, ...]) -> tuple[tuple[str, ...], ...]:
+    """Return for each constructor the keys that it needs and not all do."""
+    common = _needed_by_all(constructors)
+    return tuple(tuple(k for k in _keys_of(c)[0] if k not in common) for c in constructors)
 
 
 def _needed_by_all(constructors: tuple[Callable, ...]) -> set[str]:
@@ -386,15 +406,18 @@ def _read_file(read: Callable[[Path], Any], path: Path) -> Any:
         raise ValueError(f"file = {path.name}: {error}") from error
 
 
-def _measured_tip(file: Path) -> Any:
+def measured_tip(file: Path) -> Any:
+    """Read a tip as ``read_tip_profile`` does."""
     return _read_file(read_tip_profile, file)
 
 
-def _tabulated(file: Path) -> Any:
+def tabulated(file: Path) -> Any:
+    """Read a surface law as ``read_law`` does."""
     return _read_file(read_law, file)
 
 
-def _measured_moduli(file: Path, poisson: float, per_decade: float = 2.0) -> Any:
+def measured_moduli(file: Path, poisson: float, per_decade: float = 2.0) -> Any:
+    """Read moduli as ``read_dma`` does, and fit them as ``GeneralizedMaxwell.from_dma``."""
     frequency, storage, loss = _read_file(read_dma, file)
     return GeneralizedMaxwell.from_dma(frequency, storage, loss, poisson, per_decade)
 
@@ -428,7 +451,7 @@ CHOICES: dict[str, tuple[str, dict[str, type[Table]]]] = {
         {
             **{tip.kind: _thing(tip) for tip in (Paraboloid, Sphere, Cone, Hyperboloid, FlatPunch)},
             PowerLawTip.kind: _thing(PowerLawTip),
-            "measured": _thing(_measured_tip),
+            "measured": _thing(measured_tip),
         },
     ),
     "sample": (
@@ -444,7 +467,7 @@ CHOICES: dict[str, tuple[str, dict[str, type[Table]]]] = {
             ),
             "power-law": _thing(PowerLaw),
             "fractional-standard-linear-solid": _thing(FractionalStandardLinearSolid),
-            "measured-moduli": _thing(_measured_moduli),
+            "measured-moduli": _thing(measured_moduli),
             **{name: _thing(sample) for name, sample in NAMED.items()},
         },
     ),
@@ -457,7 +480,7 @@ CHOICES: dict[str, tuple[str, dict[str, type[Table]]]] = {
             **{law.kind: _thing(law) for law in (Exponential, Morse, Dugdale)},
             "dlvo": _thing(DLVO, DLVO.from_concentration),
             **{law.kind: _thing(law) for law in (Repulsion, VanDerWaalsAttraction)},
-            "tabulated": _thing(_tabulated),
+            "tabulated": _thing(tabulated),
             "sum": SumSurface,
         },
     ),

@@ -4,7 +4,6 @@ Its panels are those of Fig. 9 of Rajabifar et al. 2021, and the lowest height o
 against Z the amplitude itself would be a diagonal with all its jumps too small to see.
 """
 
-import json
 from typing import Any, Final
 
 import numpy as np
@@ -24,23 +23,12 @@ from softafm.drawing import (
     stroke_entries,
     tidy,
 )
-from softafm.sweeps import DIRECTIONS, jumps_of
+from softafm.sweeps import AXES, DIRECTIONS, Curves, curves_of, jumps_of
 
-_AXES = {
-    "ratio": ("Amplitude ratio A/A₀", None),
-    "phase": ("Phase lag (°)", None),
-    "dissipation": ("Dissipation in a cycle", "J"),
-    "virial": ("Virial", "J"),
-    "height": ("Mean height of the tip, Z", "m"),
-    "lowest": ("Lowest height of the tip, Z − A", "m"),
-}
-_MOST_MARKERS = 60
 _STABLE: dict[str, Any] = {"marker": "o", "markersize": 3.5, "linestyle": "none"}
 _UNSTABLE: dict[str, Any] = {**_STABLE, "markerfacecolor": "white", "markeredgewidth": 0.8}
 _JUMP: dict[str, Any] = {"arrowstyle": "-|>", "linewidth": 0.8, "shrinkA": 0, "shrinkB": 0}
 _LEFT_OUT: Final = "0.55"
-
-Curves = dict[str, dict[str, np.ndarray]]
 
 
 def approach_curve(runs: list[xr.Dataset], names: list[str]) -> Figure:
@@ -52,7 +40,7 @@ def approach_curve(runs: list[xr.Dataset], names: list[str]) -> Figure:
         raise ValueError("a result holds no height for any amplitude: there is nothing to draw")
     figure = Figure(figsize=(9.6, 7.2), dpi=150, layout="constrained")
     (phase, dissipation), (virial, lowest) = figure.subplots(2, 2)
-    curves = [_curves(run) for run in runs]
+    curves = [curves_of(run) for run in runs]
     jumps = [{direction: jumps_of(run, direction) for direction in DIRECTIONS} for run in runs]
     _draw(phase, curves, jumps, "ratio", "phase")
     _draw(dissipation, curves, jumps, "ratio", "dissipation")
@@ -69,39 +57,11 @@ def approach_curve(runs: list[xr.Dataset], names: list[str]) -> Figure:
     return figure
 
 
-def _curves(run: xr.Dataset) -> Curves:
-    """What is drawn of a run, SI: two sweeps and two kinds of solutions, each by axis."""
-    free = json.loads(run.attrs["experiment"])["motion"]["free_amplitude"]
-    curves: Curves = {}
-    for direction in DIRECTIONS:
-        swept = {
-            name: run[f"{direction}_{name}"].values for name in ("phase", "dissipation", "virial")
-        }
-        amplitude, height = run[f"{direction}_amplitude"].values, run["sweep_height"].values
-        lowest = height - amplitude
-        curves[direction] = {
-            **swept, "ratio": amplitude / free, "height": height, "lowest": lowest
-        }  # fmt: skip
-    ordered = run.sortby("amplitude_ratio")
-    ratio = ordered["amplitude_ratio"].values
-    every = max(1, ratio.size // _MOST_MARKERS)
-    for kind, branches in (("stable", ["attractive", "repulsive"]), ("unstable", ["unstable"])):
-        chosen = ordered.sel(branch=branches).isel(amplitude_ratio=slice(None, None, every))
-        solutions = {
-            name: chosen[name].values.ravel() for name in ("phase", "dissipation", "virial")
-        }
-        height = chosen["mean_height"].values.ravel()
-        ratios = np.tile(ratio[::every], len(branches))
-        lowest = height - free * ratios
-        curves[kind] = {**solutions, "ratio": ratios, "height": height, "lowest": lowest}
-    return curves
-
-
 def _draw(ax: Axes, runs: list[Curves], jumps: list[dict], abscissa: str, ordinate: str) -> None:
     """Draw solutions, sweeps and jumps of all runs, in the prefixes that suit them."""
     scales = []
     for name, label in ((abscissa, ax.set_xlabel), (ordinate, ax.set_ylabel)):
-        title, unit = _AXES[name]
+        title, unit = AXES[name]
         scale = 1.0
         if unit is not None:
             scale = factor_of(*(part[name] for run in runs for part in run.values()))

@@ -19,8 +19,11 @@ NEGLIGIBLE = 1e-4
 def read_dma(path: str | Path) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Read frequency (Hz), storage and loss modulus (Pa) from a CSV file.
 
-    The header names the units, for example ``frequency (Hz),storage (MPa),loss (MPa)``; other
-    columns are ignored.
+    Parameters
+    ----------
+    path
+        CSV file whose header names the units, for example
+        ``frequency (Hz),storage (MPa),loss (MPa)``; other columns are ignored.
 
     Raises
     ------

@@ -28,7 +28,7 @@ class FractionalStandardLinearSolid(Represented):
     creep_time
         Creep (retardation) time τ, s.
     exponent
-        a, above 0 and below 1; it would be a standard linear solid at 1.
+        Exponent a, above 0 and below 1; it would be a standard linear solid at 1.
     window
         Shortest and longest time of the experiment, s.
     poisson

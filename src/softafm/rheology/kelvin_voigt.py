@@ -49,13 +49,27 @@ class KelvinVoigt(Solid):
 
     @classmethod
     def from_viscosity(cls, E: float, viscosity: float, poisson: float) -> "KelvinVoigt":
-        """Build from the viscosity η (Pa s) of the dashpot in uniaxial extension: τ = η/E."""
+        """Build from the viscosity of the dashpot: τ = η/E.
+
+        Parameters
+        ----------
+        viscosity
+            Viscosity η in uniaxial extension, Pa s.
+        """
         E, viscosity = positive("E", E, "Pa"), positive("viscosity", viscosity, "Pa s")
         return cls(E, viscosity / E, poisson)
 
     @classmethod
     def from_shear(cls, G: float, viscosity: float, poisson: float) -> "KelvinVoigt":
-        """Build from shear modulus (Pa) and shear viscosity (Pa s): E = 2(1 + ν)G, τ = η/G."""
+        """Build from what is known in shear: E = 2(1 + ν)G, τ = η/G.
+
+        Parameters
+        ----------
+        G
+            Shear modulus of the spring, Pa.
+        viscosity
+            Viscosity η in shear, Pa s.
+        """
         G, viscosity = positive("G", G, "Pa"), positive("viscosity", viscosity, "Pa s")
         return cls(2 * (1 + poisson_ratio(poisson)) * G, viscosity / G, poisson)
 

@@ -48,16 +48,28 @@ class Maxwell(Solid):
 
     @classmethod
     def from_viscosity(cls, E0: float, viscosity: float, poisson: float) -> "Maxwell":
-        """Build from the viscosity η_E in uniaxial *extension* (Pa s): λ = η_E/E0.
+        """Build from the viscosity in uniaxial extension: λ = η_E/E0.
 
-        It is 2(1 + ν) times the shear viscosity η, Trouton's 3η at ν = 0.5; see ``from_shear``.
+        Parameters
+        ----------
+        viscosity
+            Viscosity η_E in uniaxial *extension*, Pa s: 2(1 + ν) times that in shear, Trouton's 3η
+            at ν = 0.5.
         """
         E0, viscosity = positive("E0", E0, "Pa"), positive("viscosity", viscosity, "Pa s")
         return cls(E0, viscosity / E0, poisson)
 
     @classmethod
     def from_shear(cls, G0: float, viscosity: float, poisson: float) -> "Maxwell":
-        """Build from shear modulus (Pa) and *shear* viscosity (Pa s): E0 = 2(1 + ν)G0, λ = η/G0."""
+        """Build from what is known in shear: E0 = 2(1 + ν)G0, λ = η/G0.
+
+        Parameters
+        ----------
+        G0
+            Short-term shear modulus, Pa.
+        viscosity
+            Viscosity η in *shear*, Pa s.
+        """
         G0, viscosity = positive("G0", G0, "Pa"), positive("viscosity", viscosity, "Pa s")
         return cls(2 * (1 + poisson_ratio(poisson)) * G0, viscosity / G0, poisson)
 
@@ -114,7 +126,15 @@ class GeneralizedMaxwell(Solid):
     def from_shear(
         cls, G_inf: float, shear_moduli, relaxation_times, poisson: float
     ) -> "GeneralizedMaxwell":
-        """Build from shear moduli (Pa) at constant Poisson's ratio: E = 2(1 + ν)G."""
+        """Build from shear moduli at constant Poisson's ratio: E = 2(1 + ν)G.
+
+        Parameters
+        ----------
+        G_inf
+            Long-term shear modulus, Pa; zero if the sample flows.
+        shear_moduli
+            Shear moduli G_k, Pa; zeros count for nothing.
+        """
         factor = 2 * (1 + poisson_ratio(poisson))
         G_inf = finite("G_inf", G_inf, "Pa")
         if G_inf < 0:
@@ -129,8 +149,14 @@ class GeneralizedMaxwell(Solid):
     ) -> "GeneralizedMaxwell":
         """Build from a normalised series, E_k = ratio_k·E0, E_inf = (1 − Σ ratios)·E0.
 
-        Finite-element programs state materials so: the short-term modulus E0 (Pa) and ratios of
-        no unit, of which the sum is at most 1; it flows if the sum is 1.
+        Finite-element programs state materials so.
+
+        Parameters
+        ----------
+        E0
+            Short-term Young's modulus, Pa.
+        ratios
+            E_k/E0, no unit, of which the sum is at most 1; it flows if the sum is 1.
         """
         E0 = positive("E0", E0, "Pa")
         ratios = positives("ratios", ratios, "(no unit)", zeros=True)
@@ -149,9 +175,13 @@ class GeneralizedMaxwell(Solid):
     ) -> "GeneralizedMaxwell":
         """Fit measured Young's moduli: frequency (Hz, rising), storage and loss modulus (Pa).
 
-        Non-negative least squares of the relative misfit, over relaxation times so many a decade;
-        ``softafm.rheology.dma_misfit`` tells how well the result fits. Beyond the measured
-        frequencies the fit is an extrapolation.
+        Non-negative least squares of the relative misfit; ``softafm.rheology.dma_misfit`` tells how
+        well the result fits. Beyond the measured frequencies the fit is an extrapolation.
+
+        Parameters
+        ----------
+        per_decade
+            Relaxation times for each decade of frequency, 0.5 to 10.
         """
         return cls(*fit_prony(frequency, storage, loss, per_decade), poisson)
 

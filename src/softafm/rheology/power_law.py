@@ -24,13 +24,13 @@ class PowerLaw(Represented):
     E1
         Young's relaxation modulus at ``reference_time``, Pa.
     exponent
-        a, above 0 and below 1.
+        Exponent a, above 0 and below 1.
     window
         Shortest and longest time of the experiment, s.
     poisson
         Poisson's ratio, in (-1, 0.5].
     reference_time
-        t0, s.
+        Time t0 at which the modulus is E1, s.
     error
         Largest relative error allowed, 1e-5 to 0.5: of the creep compliance at times in the
         window, and of the complex compliance at ω between their inverses.

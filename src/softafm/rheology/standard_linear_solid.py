@@ -55,7 +55,13 @@ class StandardLinearSolid(Solid):
     def from_relaxation_time(
         cls, E0: float, E_inf: float, relaxation_time: float, poisson: float
     ) -> "StandardLinearSolid":
-        """Build from the stress-relaxation time τ_σ (s): τ = τ_σ·E0/E_inf."""
+        """Build from the stress-relaxation time: τ = τ_σ·E0/E_inf.
+
+        Parameters
+        ----------
+        relaxation_time
+            Stress-relaxation time τ_σ at constant strain, s; shorter than the creep time.
+        """
         relaxation_time = positive("relaxation_time", relaxation_time, "s")
         E0, E_inf = positive("E0", E0, "Pa"), positive("E_inf", E_inf, "Pa")
         return cls(E0, E_inf, relaxation_time * E0 / E_inf, poisson)
@@ -64,7 +70,13 @@ class StandardLinearSolid(Solid):
     def from_shear(
         cls, G0: float, G_inf: float, creep_time: float, poisson: float
     ) -> "StandardLinearSolid":
-        """Build from shear moduli (Pa) at constant Poisson's ratio: E = 2(1 + ν)G."""
+        """Build from shear moduli at constant Poisson's ratio: E = 2(1 + ν)G.
+
+        Parameters
+        ----------
+        G0, G_inf
+            Short- and long-term shear modulus, Pa; G_inf ≤ G0.
+        """
         G0, G_inf = positive("G0", G0, "Pa"), positive("G_inf", G_inf, "Pa")
         factor = 2 * (1 + poisson_ratio(poisson))
         return cls(factor * G0, factor * G_inf, creep_time, poisson)

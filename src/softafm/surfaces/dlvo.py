@@ -34,9 +34,9 @@ class DLVO(SurfaceLaw):
     surface_potential
         Potential ψ of the sample, V, and of the tip unless ``tip_potential`` is given; ±1 at most.
     debye_length
-        λ, m.
+        Debye length λ, m.
     temperature
-        T, K, 200 to 1000.
+        Temperature T, K, 200 to 1000.
     permittivity
         Relative permittivity of the liquid, 1 to 1000; 78.4 of water.
     tip_potential
@@ -85,7 +85,13 @@ class DLVO(SurfaceLaw):
         permittivity: float = 78.4,
         tip_potential: float | None = None,
     ) -> "DLVO":
-        """Build the law from the concentration of the salt in mol/L, 1e-7 (pure water) to 10."""
+        """Build the law from the concentration of the salt.
+
+        Parameters
+        ----------
+        concentration
+            Concentration of the 1:1 salt, mol/L, 1e-7 (pure water) to 10.
+        """
         n = 1e3 * _AVOGADRO * between("concentration", concentration, "mol/L", 1e-7, 10)
         epsilon = _VACUUM * _permittivity(permittivity)
         squared = epsilon * _BOLTZMANN * _temperature(temperature) / (2 * n * _CHARGE**2)

@@ -54,7 +54,13 @@ class DMT(SurfaceLaw):
 
     @classmethod
     def from_work_of_adhesion(cls, W: float, z0: float, wall: float = 0.1) -> "DMT":
-        """Build the law from W = H/(12πz0²)·(1 − 2·wall), J/m², z0, m, and wall."""
+        """Build the law from its work of adhesion, W = H/(12πz0²)·(1 − 2·wall).
+
+        Parameters
+        ----------
+        W
+            Work per area to part the surfaces, J/m².
+        """
         W, z0 = positive("W", W, "J/m²"), length("z0", z0)
         share = 1 - 2 * between("wall", wall, "", *_WALLS)
         return cls(12 * pi * z0**2 * W / share, z0, wall)

@@ -26,7 +26,7 @@ class Dugdale(SurfaceLaw):
     Parameters
     ----------
     work_of_adhesion
-        W, J/m².
+        Work of adhesion W, J/m².
     z0
         Equilibrium gap, where the pressure vanishes, m.
     tension

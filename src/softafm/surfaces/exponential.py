@@ -18,7 +18,7 @@ class Exponential(SurfaceLaw):
     Parameters
     ----------
     work_of_adhesion
-        W = σ·(decay − core), J/m².
+        Work of adhesion W = σ·(decay − core), J/m².
     z0
         Equilibrium gap, where the pressure vanishes, m.
     decay

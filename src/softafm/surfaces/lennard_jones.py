@@ -40,7 +40,13 @@ class LennardJones(SurfaceLaw):
 
     @classmethod
     def from_work_of_adhesion(cls, W: float, z0: float) -> "LennardJones":
-        """Build the law from its work of adhesion W = H/(16πz0²), J/m², and z0, m."""
+        """Build the law from its work of adhesion, W = H/(16πz0²).
+
+        Parameters
+        ----------
+        W
+            Work per area to part the surfaces, J/m².
+        """
         W = positive("W", W, "J/m²")
         z0 = positive("z0", z0, "m")
         return cls(hamaker=16 * pi * z0**2 * W, z0=z0)

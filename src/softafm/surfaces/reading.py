@@ -10,7 +10,11 @@ from softafm.units import LENGTH, PRESSURE
 def read_law(path: str | Path) -> Tabulated:
     """Read a law from columns ``gap`` and ``pressure`` of a CSV file, positive = repulsive.
 
-    The header names the units, for example ``gap (nm),pressure (MPa)``; other columns are ignored.
+    Parameters
+    ----------
+    path
+        CSV file whose header names the units, for example ``gap (nm),pressure (MPa)``; other
+        columns are ignored.
 
     Raises
     ------

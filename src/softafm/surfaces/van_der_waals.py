@@ -57,7 +57,13 @@ class VanDerWaals(SurfaceLaw):
 
     @classmethod
     def from_work_of_adhesion(cls, W: float, z0: float, exponent: float = 9.0) -> "VanDerWaals":
-        """Build the law from W = H/(12πz0²)·(n−3)/(n−1), J/m², z0, m, and n."""
+        """Build the law from its work of adhesion, W = H/(12πz0²)·(n−3)/(n−1).
+
+        Parameters
+        ----------
+        W
+            Work per area to part the surfaces, J/m².
+        """
         W, z0, n = positive("W", W, "J/m²"), length("z0", z0), _exponent(exponent)
         return cls(12 * pi * z0**2 * W * (n - 1) / (n - 3), z0, n)
 

@@ -10,7 +10,11 @@ from softafm.units import LENGTH
 def read_tip_profile(path: str | Path) -> MeasuredTip:
     """Read a tip from columns ``radius`` and ``height`` of a CSV file.
 
-    The header names the units, for example ``radius (nm),height (nm)``; other columns are ignored.
+    Parameters
+    ----------
+    path
+        CSV file whose header names the units, for example ``radius (nm),height (nm)``; other
+        columns are ignored.
 
     Raises
     ------

@@ -1,0 +1,108 @@
+"""What is drawn of a result: lines, points and jumps as columns of numbers in SI units."""
+
+from collections.abc import Sequence
+from itertools import pairwise
+from math import inf
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from softafm import histories, sweeps
+from softafm.sweeps import DIRECTIONS, Curves
+
+if TYPE_CHECKING:
+    from xarray import Dataset
+
+AXES = {**histories.AXES, **sweeps.AXES}
+_MOST_POINTS = 4000
+
+
+class Parts(NamedTuple):
+    """What is drawn of one result; each part has columns named as in ``AXES``."""
+
+    lines: Curves
+    """``"approach"`` and ``"retract"``, with NaN where a line is interrupted."""
+    points: Curves
+    """Points by what they are called."""
+    jumps: dict[str, tuple[dict[str, np.ndarray], dict[str, np.ndarray]]]
+    """For each direction of a sweep the states before and after its jumps."""
+
+    def holds(self, *names: str) -> bool:
+        """Whether there are columns of all these names."""
+        return all(name in self.lines["approach"] for name in names)
+
+    def extent(self, name: str, along: str = "", within: tuple[float, float] = (-inf, inf)):
+        """Return lowest and highest value on lines and points, where ``along`` is ``within``."""
+        found = []
+        for part in (*self.lines.values(), *self.points.values()):
+            values = part[name]
+            at = part[along or name]
+            found.append(values[(at >= within[0]) & (at <= within[1]) & np.isfinite(values)])
+        values = np.concatenate(found)
+        return (float(values.min()), float(values.max())) if values.size else (inf, -inf)
+
+
+def parts_of(result: "Dataset") -> Parts | None:
+    """Return what is drawn of a result; None if there is nothing."""
+    if "sweep_height" in result.dims:
+        return _sweep_parts(result) if result.sizes["sweep_height"] else None
+    if "time" in result.dims and result.sizes["time"] > 1:
+        return _history_parts(result)
+    return None
+
+
+def _history_parts(result: "Dataset") -> Parts:
+    columns = {
+        name: result[name].values
+        for name in histories.AXES
+        if name in result and result[name].dims == ("time",)
+    }
+    kept = thinned(list(columns.values()), _MOST_POINTS)
+    time, height = columns["time"], columns[histories.moved(result)][kept]
+    strokes: dict[str, list[slice]] = {direction: [] for direction in DIRECTIONS}
+    for samples, falling in histories.strokes(height):
+        strokes["approach" if falling else "retract"].append(samples)
+    lines = {
+        direction: {name: _apart(values[kept], samples) for name, values in columns.items()}
+        for direction, samples in strokes.items()
+    }
+    jumps = result["jump_time"].values
+    points = {name: np.interp(jumps, time, values) for name, values in columns.items()}
+    return Parts(lines, {"elastic jump": points} if jumps.size else {}, {})
+
+
+def _sweep_parts(result: "Dataset") -> Parts:
+    curves = sweeps.curves_of(result)
+    lines, jumps = {}, {}
+    for direction in DIRECTIONS:
+        swept, pairs = curves[direction], sweeps.jumps_of(result, direction)
+        cut = [max(pair) for pair in pairs]
+        lines[direction] = {name: np.insert(v, cut, np.nan) for name, v in swept.items()}
+        before, after = (
+            {name: values[[pair[side] for pair in pairs]] for name, values in swept.items()}
+            for side in (0, 1)
+        )
+        if pairs:
+            jumps[direction] = before, after
+    points = {f"{kind} solution": curves[kind] for kind in ("stable", "unstable")}
+    return Parts(lines, points, jumps)
+
+
+def _apart(values: np.ndarray, samples: Sequence[slice]) -> np.ndarray:
+    """Return stretches of an array one after another, with NaN between them."""
+    pieces = [piece for one in samples for piece in (values[one], [np.nan])]
+    return np.concatenate(pieces[:-1]) if pieces else np.empty(0)
+
+
+def thinned(columns: Sequence[np.ndarray], most: int) -> np.ndarray:
+    """Return the indices of at most ``most`` samples that keep the extremes of every column."""
+    size = columns[0].size
+    if size <= most:
+        return np.arange(size)
+    edges = np.linspace(0, size, (most - 2) // (2 * len(columns)) + 1).astype(int)
+    kept = [np.array([0, size - 1])]
+    for values in columns:
+        for extreme in (np.argmin, np.argmax):
+            found = [low + extreme(values[low:high]) for low, high in pairwise(edges)]
+            kept.append(np.array(found))
+    return np.unique(np.concatenate(kept))

@@ -1,0 +1,92 @@
+"""What the fields of the form mean: the docstrings of what the tables build, as plain text."""
+
+import inspect
+import re
+from collections.abc import Callable
+from functools import cache
+from typing import Any
+
+from softafm import schema
+from softafm.cantilever import Cantilever
+from softafm.measured import read_trajectory
+from softafm.modes.approach import approach_curve
+from softafm.modes.force_distance import force_distance
+from softafm.motions import Sine, Triangle
+from softafm.rheology import GeneralizedMaxwell, StandardLinearSolid, read_dma
+from softafm.surfaces import SumOfLaws, read_law
+from softafm.tips import read_tip_profile
+
+_STANDS_FOR: dict[Any, tuple[Callable, ...]] = {
+    schema.StandardLinearSolidSample: (
+        StandardLinearSolid,
+        StandardLinearSolid.from_relaxation_time,
+        StandardLinearSolid.from_shear,
+    ),
+    schema.TriangleMotion: (Triangle, Triangle.from_frequency),
+    schema.SineMotion: (Sine,),
+    schema.TapMotion: (Sine,),
+    schema.TrajectoryMotion: (read_trajectory,),
+    schema.SweepMotion: (approach_curve, schema.SweepMotion),
+    schema.LeverTable: (Cantilever,),
+    schema.ResonatorTable: (Cantilever,),
+    schema.Run: (force_distance,),
+    schema.SumSurface: (SumOfLaws,),
+    schema.measured_tip: (read_tip_profile,),
+    schema.measured_moduli: (read_dma, GeneralizedMaxwell.from_dma, GeneralizedMaxwell),
+    schema.tabulated: (read_law,),
+}
+"""What tells the meaning of the keys of hand-written tables, and of functions that build."""
+
+_PARAMETER = {"work_of_adhesion": "W", "file": "path"}
+"""What a key is called where it is not called as in the table."""
+
+
+def summary_of(table: type[schema.Table]) -> str:
+    """Return in one sentence what a table describes."""
+    return _plain(_text(_documented(table)[0]).partition("\n\n")[0])
+
+
+def help_of(table: type[schema.Table], key: str, constructor: Callable | None = None) -> str:
+    """Return what a key of a table means, with its SI unit and bounds; "" if nothing tells.
+
+    ``constructor`` is the one of the table's that is to be called, if it matters.
+    """
+    first = (constructor,) if constructor else ()
+    for documented in (*first, *_documented(table)):
+        parameters = _parameters(documented)
+        for name in (key, _PARAMETER.get(key, key)):
+            if name in parameters:
+                return parameters[name]
+    return ""
+
+
+def _documented(table: type[schema.Table]) -> tuple[Callable, ...]:
+    """Return what builds a table's object, and so tells what its keys mean."""
+    if table in _STANDS_FOR:
+        return _STANDS_FOR[table]
+    if issubclass(table, schema.Solver):
+        return (table.solver,)
+    if issubclass(table, schema.Thing):
+        made = (_STANDS_FOR.get(make, (make,)) for make in table.constructors)
+        return tuple(documented for several in made for documented in several)
+    return (table,)
+
+
+def _text(documented: Any) -> str:
+    return inspect.getdoc(documented) or ""
+
+
+@cache
+def _parameters(documented: Any) -> dict[str, str]:
+    """Return the texts of a docstring's section ``Parameters`` by name."""
+    _, heading, section = _text(documented).partition("Parameters\n----------\n")
+    section = re.split(r"\n\n\w[\w ]*\n-+\n", section)[0] if heading else ""
+    found = {}
+    for names, words in re.findall(r"^(\w[\w, ]*)\n((?:(?: .*)?(?:\n|$))+)", section, re.MULTILINE):
+        found.update(dict.fromkeys(names.split(", "), _plain(words)))
+    return found
+
+
+def _plain(text: str) -> str:
+    """Return text in one line, without marks for code and emphasis."""
+    return re.sub(r"``|(?<!\w)\*(\w[^*]*)\*(?!\w)", r"\1", " ".join(text.split()))

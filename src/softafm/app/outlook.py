@@ -1,0 +1,95 @@
+"""What is to be said of a document before any run: what is wrong with it, or what it will be."""
+
+import re
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+from softafm.app.files import refuse_paths
+from softafm.app.form import tables
+from softafm.config import experiment_from
+from softafm.refusals import ConfigError, shown
+from softafm.regime import Row, expected_seconds, rows
+
+_OPTIONAL = ("solver", "run")
+_LONGEST_PATH = 60
+"""Length to which the refusal of an unknown key cuts its path."""
+_LINE = re.compile(r"([\w.\[\]-]+)(?: = .*?)?: (.*)")
+
+
+@dataclass(frozen=True)
+class Outlook:
+    """What a document leads to.
+
+    ``problems`` are reasons by the path of what they refuse; without any, ``rows`` tell the regime
+    and ``seconds`` the order of magnitude of a run, s on one core.
+    """
+
+    problems: dict[str, str] = field(default_factory=dict)
+    rows: tuple[Row, ...] = ()
+    seconds: float | None = None
+
+
+def outlook(document: Mapping[str, Any], folder: Path) -> Outlook:
+    """Return what is wrong with a document, or its regime; its files are sought in ``folder``."""
+    needed = [name for name in tables(document.get("mode")) if name not in _OPTIONAL]
+    whole = {**dict(document), **{name: {} for name in needed if name not in document}}
+    try:
+        refuse_paths(whole)
+        experiment = experiment_from(whole, folder)
+    except ConfigError as error:
+        return Outlook(problems=_by_path(str(error).splitlines(), whole))
+    try:
+        return Outlook({}, tuple(rows(experiment)), expected_seconds(experiment))
+    except (ValueError, ArithmeticError, RuntimeError) as error:
+        return Outlook(problems={"mode": f"cannot be foreseen: {error}"})
+
+
+def problems(document: Mapping[str, Any], folder: Path) -> dict[str, str]:
+    """Return why a document cannot run: reasons by path, such as ``"sample.E0"``; {} if it can."""
+    return outlook(document, folder).problems
+
+
+def summary(document: Mapping[str, Any], folder: Path) -> tuple[Row, ...]:
+    """Return the rows of ``softafm info``; () if the document cannot run."""
+    return outlook(document, folder).rows
+
+
+def cost(document: Mapping[str, Any], folder: Path) -> float | None:
+    """Return the order of magnitude of a run, s on one core; None if the document cannot run."""
+    return outlook(document, folder).seconds
+
+
+def _by_path(lines: list[str], document: Mapping[str, Any]) -> dict[str, str]:
+    """Part the lines of a ConfigError, ``path = value: reason`` or ``path: reason``."""
+    places = sorted(_places(document, ""), key=lambda place: -len(place[0]))
+    found: dict[str, str] = {}
+    for line in lines:
+        path, reason = _parted(line, places)
+        found.setdefault(path, reason)
+    return found
+
+
+def _parted(line: str, places: list[tuple[str, Any]]) -> tuple[str, str]:
+    for path, value in places:
+        for start in (f"{path} = {shown(value)}: ", f"{path[:_LONGEST_PATH]}: "):
+            # A ConfigError escapes what cannot be printed, and so must be compared with one.
+            start = str(ConfigError([start]))
+            if line.startswith(start):
+                return path, line.removeprefix(start)
+    match = _LINE.fullmatch(line)
+    return (match[1], match[2]) if match else ("mode", line)
+
+
+def _places(thing: Any, path: str) -> Iterator[tuple[str, Any]]:
+    """Yield everything in a document with its path."""
+    if isinstance(thing, dict):
+        for key, value in thing.items():
+            inner = f"{path}.{key}" if path else str(key)
+            yield inner, value
+            yield from _places(value, inner)
+    elif isinstance(thing, list):
+        for index, value in enumerate(thing):
+            yield f"{path}[{index}]", value
+            yield from _places(value, f"{path}[{index}]")

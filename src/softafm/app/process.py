@@ -1,0 +1,103 @@
+"""The handle of a process that runs experiments (``softafm.app.worker``)."""
+
+import os
+import pickle
+import signal
+import subprocess
+import sys
+from collections.abc import Mapping
+from contextlib import suppress
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from softafm.app.worker import Answer
+
+GONE = (EOFError, OSError, pickle.UnpicklingError)
+"""What asking or hearing a process raises that is gone."""
+_KEPT = {
+    "HOME", "LANG", "LANGUAGE", "LD_LIBRARY_PATH", "DYLD_LIBRARY_PATH", "LOCALAPPDATA", "PATH",
+    "SYSTEMROOT", "TEMP", "TMP", "TMPDIR", "USERPROFILE",
+}  # fmt: skip
+_KEPT_PREFIXES = ("LC_", "XDG_", "NUMBA_", "OPENBLAS_", "NVPL_", "BLIS_", "MKL_", "OMP_")
+"""Among them what chooses the code for algebra: with another a run differs in its last bits."""
+_THREADS = ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS", "VECLIB_MAXIMUM_THREADS")
+
+
+class Process:
+    """A process that waits for runs, with only so much of our environment as it needs.
+
+    Attributes
+    ----------
+    warm
+        Whether it has said that it is ready.
+    """
+
+    def __init__(self) -> None:
+        # Not multiprocessing: its children import the parent's script, and get all its environment.
+        command = [sys.executable, "-P", "-m", "softafm.app.worker"]
+        self._process = subprocess.Popen(
+            command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, env=_environment()
+        )
+        assert self._process.stdin is not None
+        assert self._process.stdout is not None
+        self._requests, self._answers = self._process.stdin, self._process.stdout
+        self.warm = False
+
+    @property
+    def id(self) -> int:
+        """The operating system's number of the process."""
+        return self._process.pid
+
+    @property
+    def alive(self) -> bool:
+        """Whether it is warm and has not ended."""
+        return self.warm and self._process.poll() is None
+
+    @property
+    def last_words(self) -> str:
+        """Why the process is gone, having waited until it is."""
+        code = self._process.wait()
+        if code >= 0:
+            return f"its process ended with exit code {code}; the server's log may say why"
+        try:
+            name = signal.Signals(-code).name
+        except ValueError:
+            name = f"signal {-code}"
+        return f"its process was ended by {name}, perhaps for lack of memory"
+
+    def warm_up(self) -> None:
+        """Wait until it is ready, or gone."""
+        with suppress(*GONE):
+            self.warm = self.answer()[0] == "ready"
+
+    def ask(self, document: Mapping[str, Any], folder: str) -> None:
+        """Send a run; an exception of ``GONE`` if it is gone."""
+        pickle.dump((document, folder), self._requests)
+        self._requests.flush()
+
+    def answer(self) -> "Answer":
+        """Wait for the next answer; an exception of ``GONE`` if it is gone."""
+        return pickle.load(self._answers)
+
+    def kill(self) -> None:
+        """End it, in the midst of whatever it does."""
+        self._process.kill()
+
+    def close(self) -> None:
+        """End it, and forget it."""
+        self.kill()
+        self._process.wait()
+        self._answers.close()
+        with suppress(OSError):  # the last request may never have got through
+            self._requests.close()
+
+
+def _environment() -> dict[str, str]:
+    """Return what a process needs to know of ours: no secrets, and one thread for algebra."""
+    kept = {
+        name: value
+        for name, value in os.environ.items()
+        if name.upper() in _KEPT or name.upper().startswith(_KEPT_PREFIXES)
+    }
+    kept["PYTHONPATH"] = os.pathsep.join(entry for entry in sys.path if entry)
+    return kept | dict.fromkeys(_THREADS, "1")
