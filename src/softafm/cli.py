@@ -271,6 +271,39 @@ def export(
     typer.echo(f"saved {out}")
 
 
+@app.command(name="app")
+def page(
+    port: Annotated[int | None, typer.Option(help="Port; default 5006, or any free one.")] = None,
+    address: Annotated[str, typer.Option(help="Where to listen; 0.0.0.0 is everywhere.")] = (
+        "127.0.0.1"
+    ),
+    origin: Annotated[
+        list[str] | None, typer.Option(help="HOST:PORT by which browsers reach the page.")
+    ] = None,
+    browser: Annotated[bool, typer.Option(help="Open the page in the browser.")] = True,
+    processes: Annotated[int, typer.Option(help="Runs at the same time.")] = 1,
+    waiting: Annotated[int, typer.Option(help="Runs of one user that may wait.")] = 4,
+    run_limit: Annotated[str, typer.Option(help="Longest run.", metavar="TIME")] = "600 s",
+    upload_limit: Annotated[float, typer.Option(help="Largest file, MB.", metavar="MB")] = 20.0,
+) -> None:
+    """Open the web page: forms, plots and surface movies; needs softafm[app]."""
+    with _bad_input():
+        try:
+            from softafm.app.limits import Limits
+            from softafm.app.server import serve
+        except ModuleNotFoundError as error:
+            raise ValueError(
+                f"the page needs the package '{error.name}': pip install 'softafm[app]'"
+            ) from None
+        limits = Limits(
+            processes=processes,
+            waiting=waiting,
+            run_seconds=_time("run-limit", run_limit) or 0.0,
+            upload_bytes=int(1e6 * upload_limit),
+        )
+        serve(limits, address, port, tuple(origin or ()), browser)
+
+
 def _complain(text: str, code: int) -> int:
     for line in text.splitlines():
         print(f"softafm: {line}", file=sys.stderr)

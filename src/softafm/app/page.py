@@ -1,0 +1,332 @@
+"""One user's page: the form on the left, runs and what they found on the right."""
+
+import base64
+import binascii
+from contextlib import suppress
+from importlib import resources
+from pathlib import Path
+from typing import Any
+
+import panel as pn
+import param
+
+from softafm.app.colours import Theme, recolour
+from softafm.app.documents import with_value
+from softafm.app.form import presets
+from softafm.app.limits import Limits
+from softafm.app.links import from_query, to_query
+from softafm.app.runs import Runner
+from softafm.app.session import Entry, Session, refuse_large
+from softafm.app.tables import regime_html
+from softafm.app.views import html, views
+from softafm.app.widgets import Form
+from softafm.config import document_from
+from softafm.refusals import ConfigError
+from softafm.units import readable
+
+FIRST = "ldpe-tapping"
+_REGIME = "Regime"
+_BETWEEN_LOOKS = 150
+"""Time between two looks at runs that go on, ms."""
+
+
+def resource(name: str) -> str:
+    """Return a text file of this package."""
+    return (resources.files("softafm.app") / name).read_text(encoding="utf-8")
+
+
+class Piece(pn.custom.JSComponent):
+    """Header, run bar or list of runs, as ``page.js`` draws them."""
+
+    part = param.String()
+    state = param.Dict(default={})
+    _esm = resource("page.js")
+    _stylesheets = (resource("page.css"),)
+
+    def __init__(self, answer, **params):
+        super().__init__(**params)
+        self._answer = answer
+
+    def _handle_msg(self, data: Any) -> None:
+        self._answer(data)
+
+
+class Page(pn.viewable.Viewer):
+    """The page: an object to be shown in a notebook, or served.
+
+    Parameters
+    ----------
+    runner
+        What carries out the runs, by default one of its own, of one process.
+    limits
+        What the user may ask for.
+    """
+
+    def __init__(self, runner: Runner | None = None, limits: Limits | None = None, **params):
+        super().__init__(**params)
+        self.limits = limits or Limits()
+        if runner is None:
+            runner = Runner(1, self.limits.waiting, self.limits.run_seconds)
+            runner.start()
+        self.theme: Theme = "light"
+        self._movie, self._selected, self._notice = True, "", ""
+        self._drawn: Any = None
+        self._looking: Any = None
+        self.form = Form(presets()[FIRST], largest_upload=self.limits.upload_bytes // 4)
+        self.session = Session(runner, self.form.folder, self.limits)
+        self._header = Piece(self.answer, part="header", sizing_mode="stretch_width")
+        self._header.state = {"largest": self.limits.upload_bytes}
+        self._bar = Piece(self.answer, part="bar", sizing_mode="stretch_width")
+        self._list = Piece(self.answer, part="list", sizing_mode="stretch_width")
+        self._regime = html("")
+        self._tabs = pn.Tabs(
+            (_REGIME, pn.Column(self._regime, scroll=True, sizing_mode="stretch_both")),
+            dynamic=True,
+            sizing_mode="stretch_both",
+            stylesheets=[resource("tabs.css")],
+        )
+        self._layout = self._laid_out()
+        self._read_address()
+        self.form.param.watch(self._follow_form, ["document", "outlook"])
+        self._follow_form()
+        self._refresh()
+
+    def __panel__(self):
+        return self._layout
+
+    def answer(self, message: Any) -> None:
+        """Take what the browser sent; what is malformed or late is left aside."""
+        with suppress(KeyError):
+            match message:
+                case {"run": True}:
+                    self.run()
+                case {"movie": bool(wanted)}:
+                    self._movie = wanted
+                case {"theme": "light" | "dark" as theme}:
+                    self._take_theme(theme)
+                case {"show": str(id), "shown": bool(shown)}:
+                    self.session.show(id, shown)
+                case {"rename": str(id), "label": str(label)}:
+                    self.session.rename(id, label)
+                case {"select": str(id)}:
+                    self._selected = self.session[id].id
+                case {"end": str(id)}:
+                    self._end(id)
+                case {"open": str(name), "content": str(content)}:
+                    self._open(name, content)
+        self._refresh()
+
+    def run(self) -> Entry | None:
+        """Run what the form describes; None if it cannot be."""
+        if self.form.problems:
+            return None
+        document = self.form.document
+        if self._movie and self._can_film:
+            document = with_value(document, "run.profiles", True)
+        entry = self._try(
+            lambda: self.session.run(document, self._name(), self.form.outlook.seconds)
+        )
+        if entry is not None:
+            self._selected = entry.id
+            self._look()
+        return entry
+
+    def close(self) -> None:
+        """End all runs of this page."""
+        if self._looking is not None:
+            self._looking.stop()
+        self.session.close()
+
+    @property
+    def _can_film(self) -> bool:
+        return self.form.document.get("mode") != "approach-curve"
+
+    def _name(self) -> str:
+        same = (name for name, found in presets().items() if found == self.form.document)
+        return next(same, str(self.form.document.get("mode")))
+
+    def _try(self, attempt):
+        """Return what an attempt returns; None if it is refused, and let the page say why."""
+        self._notice = ""
+        try:
+            return attempt()
+        except ValueError as error:
+            self._notice = "; ".join(str(error).splitlines())
+            return None
+
+    def _end(self, id: str) -> None:
+        if self.session[id].over:
+            self.session.remove(id)
+        else:
+            self.session.cancel(id)
+
+    def _open(self, name: str, content: str) -> None:
+        def attempt():
+            given = base64.b64decode(content, validate=True)
+            refuse_large(given, self.limits)
+            if Path(name).suffix.lower() == ".nc":
+                return self.session.upload(name, given)
+            self.form.document = document_from(given.decode("utf-8-sig"), name)
+            return None
+
+        with suppress(binascii.Error):
+            entry = self._try(attempt)
+            if entry is not None:
+                self._selected = entry.id
+
+    def _take_theme(self, theme: Theme) -> None:
+        self.theme = theme
+        for pane in self._tabs:
+            if isinstance(pane, pn.pane.Bokeh):
+                recolour(pane.object, theme)
+
+    def _follow_form(self, *_: Any) -> None:
+        found = self.form.outlook
+        self._regime.object = regime_html(found.rows, self.form.problems)
+        self._notice = ""
+        self._write_address()
+        self._refresh()
+
+    def _look(self) -> None:
+        """Look after runs that go on, from now on."""
+        if self._looking is None and pn.state.curdoc is not None:
+            self._looking = pn.state.add_periodic_callback(self._refresh, _BETWEEN_LOOKS)
+
+    def _refresh(self) -> None:
+        """Bring bar, list and tabs up to date."""
+        self._bar.state = self._bar_state()
+        self._list.state = {
+            "runs": [_row(entry) for entry in self.session.entries],
+            "selected": self._selected,
+        }
+        self._draw()
+        if self._looking is not None and not self.session.busy:
+            self._looking.stop()
+            self._looking = None
+
+    def _bar_state(self) -> dict[str, Any]:
+        problems, seconds = self.form.problems, self.form.outlook.seconds
+        words, bad = self._notice, bool(self._notice)
+        if not words and problems:
+            count = len(problems)
+            words, bad = f"{count} value{'s' * (count > 1)} to mend before it can run", True
+        elif not words and seconds is not None:
+            words = f"expected to take {_about(seconds)}"
+        return {
+            "can_run": not problems,
+            "words": words,
+            "bad": bad,
+            "movie": self._movie and self._can_film,
+            "can_film": self._can_film,
+        }
+
+    def _draw(self) -> None:
+        """Make the tabs anew if other results are to be shown."""
+        done = [entry for entry in self.session.entries if entry.state == "done"]
+        shown = [entry for entry in done if entry.shown]
+        selected = next((entry for entry in done if entry.id == self._selected), None)
+        selected = selected or (shown[-1] if shown else None)
+        wanted = [(e.id, e.label) for e in shown], selected and (selected.id, selected.label)
+        if wanted == self._drawn:
+            return
+        first, self._drawn = self._drawn in (None, ([], None)), wanted
+        titles = list(self._tabs._names)
+        title = titles[self._tabs.active] if titles else _REGIME
+        found = views(shown, selected, self.form.folder, self.theme, self._address)
+        kept = self._tabs[0]
+        self._tabs[:] = [(_REGIME, kept), *found.items()]
+        titles = [_REGIME, *found]
+        opened = next(iter(found), _REGIME) if first else title
+        self._tabs.active = titles.index(opened) if opened in titles else min(1, len(found))
+
+    def _address(self, document) -> str:
+        """Return a link to this page with a document in its form."""
+        try:
+            query = to_query(document)
+        except ConfigError as error:
+            return f"none: {error}"
+        location = pn.state.location
+        start = "" if location is None else f"{location.href}".split("?")[0].split("#")[0]
+        return f"{start}?{query}"
+
+    def _write_address(self) -> None:
+        if pn.state.location is not None:
+            with suppress(ConfigError):
+                pn.state.location.search = f"?{to_query(self.form.document)}"
+
+    def _read_address(self) -> None:
+        query = "" if pn.state.location is None else pn.state.location.search
+        if query.strip("?"):
+
+            def attempt():
+                self.form.document = from_query(query)
+
+            self._try(attempt)
+
+    def _laid_out(self) -> pn.Column:
+        left = pn.Column(
+            pn.Column(self.form, scroll="y", sizing_mode="stretch_both", margin=(4, 0, 0, 0)),
+            self._bar,
+            width=400,
+            sizing_mode="stretch_height",
+            css_classes=["softafm-left"],
+        )
+        right = pn.Column(
+            self._tabs,
+            pn.Column(
+                self._list,
+                scroll="y",
+                height=118,
+                sizing_mode="stretch_width",
+                css_classes=["softafm-runs"],
+            ),
+            sizing_mode="stretch_both",
+            margin=(0, 12, 0, 12),
+        )
+        return pn.Column(
+            self._header,
+            pn.Row(left, right, sizing_mode="stretch_both"),
+            sizing_mode="stretch_both",
+            css_classes=["softafm-page"],
+        )
+
+
+def _row(entry: Entry) -> dict[str, Any]:
+    words, bad = _state_in_words(entry)
+    return {
+        "id": entry.id,
+        "label": entry.label,
+        "colour": entry.colour,
+        "shown": entry.shown,
+        "state": entry.state,
+        "fraction": entry.job.fraction if entry.job else 1.0,
+        "words": words,
+        "bad": bad,
+    }
+
+
+def _state_in_words(entry: Entry) -> tuple[str, bool]:
+    """Return where an entry stands, and whether that is bad."""
+    job = entry.job
+    if job is None:
+        return "uploaded", False
+    if entry.state == "waiting":
+        return f"waiting, number {job.place} in the queue", False
+    if entry.state == "running":
+        left = "" if job.remaining is None else f", about {_about(job.remaining)} left"
+        return f"{_about(job.elapsed)}{left}; {job.message}".rstrip("; "), False
+    if entry.state == "done":
+        warned = f"; doubtful: {' '.join(entry.warnings)}" if entry.warnings else ""
+        return f"done in {_about(job.elapsed)}{warned}", bool(warned)
+    return (job.problem or entry.state), entry.state == "failed"
+
+
+def _about(seconds: float) -> str:
+    """Return a time as people say it."""
+    if seconds < 1:
+        return readable(float(f"{seconds:.2g}"), "s")
+    if seconds < 60:
+        return f"{seconds:.0f} s"
+    if seconds < 3600:
+        return f"{seconds / 60:.0f} min"
+    return f"{seconds / 3600:.1f} h"

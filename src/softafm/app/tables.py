@@ -1,0 +1,66 @@
+"""Tables and texts of the page as HTML; whatever comes from a user is escaped."""
+
+from collections.abc import Iterable, Mapping, Sequence
+from html import escape
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from rich.table import Table
+
+    from softafm.regime import Row
+
+STYLE = """
+:host { color: var(--softafm-text, inherit); font-size: 13px; line-height: 1.4; }
+table { border-collapse: collapse; margin: 0 0 10px; }
+caption { text-align: left; font-weight: 600; padding: 2px 0 4px; }
+td { padding: 2px 18px 2px 0; vertical-align: top; }
+td:nth-child(2) { white-space: nowrap; font-variant-numeric: tabular-nums; }
+td:nth-child(3) { opacity: 0.75; }
+p { margin: 0 0 8px; }
+.problem { color: color-mix(in srgb, #f0453a 72%, currentColor); }
+h3 { margin: 8px 0 3px; font-size: 13px; }
+pre {
+  margin: 0;
+  padding: 7px 10px;
+  overflow: auto;
+  font-size: 12px;
+  white-space: pre-wrap;
+  overflow-wrap: anywhere;
+  border: 1px solid color-mix(in srgb, currentColor 20%, transparent);
+  border-radius: 4px;
+  user-select: all;
+}
+"""
+
+
+def regime_html(rows: Sequence["Row"], problems: Mapping[str, str]) -> str:
+    """Return what an experiment will be, or why it cannot run."""
+    if problems:
+        lines = "".join(
+            f"<tr><td>{escape(path)}</td><td class='problem'>{escape(reason)}</td></tr>"
+            for path, reason in problems.items()
+        )
+        return f"<table><caption>Before it can run</caption>{lines}</table>"
+    return _table("Before any run", rows)
+
+
+def numbers_html(label: str, table: "Table", warnings: Iterable[str]) -> str:
+    """Return the observables of a result, and what is doubtful about them."""
+    cells = zip(*(list(column.cells) for column in table.columns), strict=True)
+    doubts = "".join(f"<p class='problem'>{escape(text)}</p>" for text in warnings)
+    return doubts + _table(label, cells)
+
+
+def lines_html(parts: Mapping[str, str]) -> str:
+    """Return texts to be copied, each under its heading."""
+    return "".join(
+        f"<h3>{escape(title)}</h3><pre tabindex='0'>{escape(text)}</pre>"
+        for title, text in parts.items()
+    )
+
+
+def _table(caption: str, rows: Iterable[Sequence[Any]]) -> str:
+    lines = "".join(
+        "<tr>" + "".join(f"<td>{escape(str(cell))}</td>" for cell in row) + "</tr>" for row in rows
+    )
+    return f"<table><caption>{escape(caption)}</caption>{lines}</table>"
