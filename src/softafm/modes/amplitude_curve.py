@@ -65,23 +65,16 @@ class AmplitudeCurve:
         return self._taps.observables(solutions.amplitude, solutions.approach)
 
     def swept(self, heights):
-        """Amplitude (n,), phase and observables (7, n) at heights passed one after the other, m.
+        """What is recorded at heights, m, passed one after the other, and then all the way back.
 
-        The lever keeps to its branch while that attracts, and then jumps to the nearest amplitude
-        that does. NaN where there is none.
+        Two arrays: amplitude, phase and observables, (9, n) in the order of ``heights``. The lever
+        keeps to its branch while that attracts, and then jumps to the nearest amplitude that does.
+        NaN where there is none.
         """
         found = self.at_heights(heights)
-        taken, last = np.full(heights.size, -1), None
-        for i in range(heights.size):
-            choices = np.flatnonzero((found.row == i) & found.stable)
-            if choices.size:
-                wanted = found.amplitude[choices].max() if last is None else last
-                taken[i] = choices[np.argmin(np.abs(found.amplitude[choices] - wanted))]
-                last = found.amplitude[taken[i]]
         columns = np.vstack([found.amplitude, found.phase, self.observables(found)])
-        values = np.full((columns.shape[0], heights.size), np.nan)
-        values[:, taken >= 0] = columns[:, taken[taken >= 0]]
-        return values[0], values[1], values[2:]
+        there = range(heights.size)
+        return tuple(_taken(columns, found, way) for way in (there, reversed(there)))
 
     def _excess(self, amplitude, approach):
         values = self._taps.virial_and_dissipation(amplitude, approach)
@@ -96,6 +89,22 @@ class AmplitudeCurve:
         values = self._taps.virial_and_dissipation(amplitude, approach)
         stable = self._drive.stable(amplitude, *values, *(more - less) / (2 * step))
         return Solutions(row, amplitude, approach, self._drive.phase(amplitude, *values), stable)
+
+
+def _taken(columns, found: Solutions, way) -> np.ndarray:
+    """Return the column of ``columns`` (m, solutions) that a lever takes in each row of ``found``.
+
+    ``way`` is the order in which the rows, all of them, are passed.
+    """
+    values = np.full((len(columns), len(rows := list(way))), np.nan)
+    last = None
+    for row in rows:
+        choices = np.flatnonzero((found.row == row) & found.stable)
+        if choices.size:
+            wanted = found.amplitude[choices].max() if last is None else last
+            taken = choices[np.argmin(np.abs(found.amplitude[choices] - wanted))]
+            last, values[:, row] = found.amplitude[taken], columns[:, taken]
+    return values
 
 
 def _zeros(function, rows, points):

@@ -190,19 +190,19 @@ def _tables(curve: AmplitudeCurve, ratios, found: Solutions):
     names = ("mean_height", "phase", *OBSERVABLES)
     table = np.full((len(names), len(BRANCHES), ratios.size), np.nan)
     columns = np.vstack([found.amplitude + found.approach, found.phase, curve.observables(found)])
+    branch = found.branch
     for i in np.argsort(found.approach):  # the farthest last
-        table[:, BRANCHES.index(found.branch[i]), found.row[i]] = columns[:, i]
+        table[:, BRANCHES.index(branch[i]), found.row[i]] = columns[:, i]
     data: dict[str, tuple] = {
         name: (("branch", "amplitude_ratio"), values)
         for name, values in zip(names, table, strict=True)
     }
     heights = found.amplitude + found.approach
     sweep = np.linspace(heights.max(), heights.min(), _HEIGHTS) if heights.size else heights
-    for label, order in (("approach", slice(None)), ("retract", slice(None, None, -1))):
-        amplitude, phase, observables = curve.swept(sweep[order])
-        swept = dict(zip(OBSERVABLES, observables, strict=True))
-        for name, values in {"amplitude": amplitude, "phase": phase, **swept}.items():
-            data[f"{label}_{name}"] = ("sweep_height", values[order])
+    names = ("amplitude", "phase", *OBSERVABLES)
+    for label, values in zip(("approach", "retract"), curve.swept(sweep), strict=True):
+        for name, row in zip(names, values, strict=True):
+            data[f"{label}_{name}"] = ("sweep_height", row)
     coordinates = {
         "branch": ("branch", list(BRANCHES)),
         "amplitude_ratio": ("amplitude_ratio", ratios),
