@@ -126,9 +126,9 @@ class Run:
 
     def _next_stop(self):
         """Return the next instant that a step has to meet, s, or None at the end."""
-        stops = np.union1d(self.motion.breaks, self.motion.landmarks)
+        stops = np.concatenate([self.motion.breaks, self.motion.landmarks])
         ahead = stops[stops > self.surface.time]
-        return float(ahead[0]) if ahead.size else None
+        return float(ahead.min()) if ahead.size else None
 
     def _trigger(self, stop) -> float:
         """Return the force that turns the ramp before ``stop``, N."""
