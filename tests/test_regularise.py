@@ -2,6 +2,7 @@
 
 import json
 import re
+from contextlib import nullcontext
 from pathlib import Path
 
 import numpy as np
@@ -197,10 +198,12 @@ def test_a_check_repeats_the_regularised_contact(tmp_path):
 
 
 def test_the_pull_off_of_an_elastic_contact_tends_to_jkr():
-    """Johnson, Kendall and Roberts 1971: 1.5 πRW."""
+    """Johnson, Kendall and Roberts 1971: 1.5 πRW. The loop energy is told to be doubtful."""
     off = []
     for tabor in (3, 8, 20):
-        pull = -float(sa.force_distance(SOFT, RAMP, regularise=tabor).force_min)
+        doubtful = pytest.warns(sa.AccuracyWarning, match="loop energy")
+        with doubtful if tabor > 18 else nullcontext():
+            pull = -float(sa.force_distance(SOFT, RAMP, regularise=tabor).force_min)
         off.append(pull / (1.5 * np.pi * 1e-6 * W) - 1)
     assert off == sorted(off, reverse=True)
     assert 0 < off[-1] < 3e-3

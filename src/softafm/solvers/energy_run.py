@@ -18,7 +18,7 @@ _MOST_CYCLES = 150
 _PATIENCE = 8
 _SHARPEST = 3.2
 _MOST_TRIES_IN_A_FALL = 5000.0
-_SLACKEST = 22.0
+_SLACKEST = 18.0
 """Fast Tabor number up to which an edge lets go between nodes as it would in a continuum."""
 
 
@@ -324,7 +324,7 @@ class Run:
         return (
             "the contact is soft for its adhesion even when loaded fast (Tabor number "
             f"{tabor:.3g}): beyond {_SLACKEST:g} its edge catches on the nodes before it lets go. "
-            "Forces hold, but the loop energy may be wrong, by 2 % at 30 and entirely at 60; try "
+            "Forces hold, but the loop energy may be wrong, by 2 % at 20 and entirely at 60; try "
             "regularise=8",
         )
 
