@@ -2,6 +2,9 @@
 
 __version__ = "0.1.0"
 
+from importlib import import_module
+from typing import TYPE_CHECKING
+
 from softafm import indentation, samples, solvers
 from softafm.animation import animate
 from softafm.cantilever import Cantilever
@@ -58,10 +61,18 @@ from softafm.tips import (
     read_tip_profile,
 )
 
+if TYPE_CHECKING:
+    from softafm.campaigns.gwyddion import export_gwyddion
+    from softafm.campaigns.imaging import AmplitudeModulation, ForceVolume
+    from softafm.campaigns.map_drawing import plot_map
+    from softafm.campaigns.sample_map import SampleMap
+    from softafm.campaigns.scan import scan
+
 __all__ = [
     "DLVO",
     "DMT",
     "AccuracyWarning",
+    "AmplitudeModulation",
     "Cantilever",
     "Cone",
     "Contact",
@@ -72,6 +83,7 @@ __all__ = [
     "Elastic",
     "Exponential",
     "FlatPunch",
+    "ForceVolume",
     "FractionalStandardLinearSolid",
     "GeneralizedKelvinVoigt",
     "GeneralizedMaxwell",
@@ -85,6 +97,7 @@ __all__ = [
     "PowerLaw",
     "PowerLawTip",
     "Repulsion",
+    "SampleMap",
     "Sine",
     "Sphere",
     "StandardLinearSolid",
@@ -99,11 +112,13 @@ __all__ = [
     "animate",
     "approach_curve",
     "export",
+    "export_gwyddion",
     "force_distance",
     "force_spectroscopy",
     "indentation",
     "load",
     "plot_contact",
+    "plot_map",
     "plot_profiles",
     "plot_rheology",
     "plot_surface",
@@ -113,6 +128,23 @@ __all__ = [
     "read_tip_profile",
     "samples",
     "save",
+    "scan",
     "solvers",
     "tapping_cycle",
 ]
+
+_LATER = {
+    "AmplitudeModulation": "imaging",
+    "ForceVolume": "imaging",
+    "SampleMap": "sample_map",
+    "export_gwyddion": "gwyddion",
+    "plot_map": "map_drawing",
+    "scan": "scan",
+}
+"""Names and their modules in ``campaigns``, imported when first asked for."""
+
+
+def __getattr__(name: str):
+    if name not in _LATER:
+        raise AttributeError(f"module 'softafm' has no attribute '{name}'")
+    return getattr(import_module(f"softafm.campaigns.{_LATER[name]}"), name)

@@ -52,6 +52,12 @@ VARIABLES = {
     "indentation": ("m", "largest depth of the surface under the apex"),
     "jump_time": ("s", "time of elastic jumps"),
     "jump_energy": ("J", "energy released by elastic jumps"),
+    "x": ("m", "position along a line of a map"),
+    "y": ("m", "position down the lines of a map"),
+    "topography": ("m", "height at which the lever is left, that of the sample included"),
+    "sample_height": ("m", "height of the surface"),
+    "lowest_height": ("m", "lowest height of the tip, or of the base of its lever"),
+    "material": ("1", "number of the material"),
 }
 
 _DIRECTIONS = {"approach": "falls", "retract": "rises"}
@@ -255,7 +261,7 @@ def export(result: "Dataset", path, *, overwrite: bool = False) -> None:
     Raises
     ------
     ValueError
-        If the suffix is neither .csv nor .h5.
+        If the suffix is neither .csv nor .h5, or .csv for a map.
     FileExistsError, OSError
         As ``save``.
     """
@@ -263,6 +269,8 @@ def export(result: "Dataset", path, *, overwrite: bool = False) -> None:
     if suffix == ".h5":
         save(result, path, overwrite=overwrite)
     elif suffix == ".csv":
+        if {"x", "y"} <= set(result.dims):
+            raise ValueError(f"{path}: maps have no CSV; take .h5, or export_gwyddion")
         write_whole(path, overwrite, lambda part: _write_csv(result, part))
     else:
         raise ValueError(f"{path}: suffix {suffix!r} is not known, must be .csv or .h5")

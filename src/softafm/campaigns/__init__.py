@@ -1,0 +1,1 @@
+"""Sweeps and maps: many runs of one kind, kept in a store."""
