@@ -62,17 +62,20 @@ from softafm.tips import (
 )
 
 if TYPE_CHECKING:
+    from softafm.campaigns.designs import Between
     from softafm.campaigns.gwyddion import export_gwyddion
     from softafm.campaigns.imaging import AmplitudeModulation, ForceVolume
     from softafm.campaigns.map_drawing import plot_map
     from softafm.campaigns.sample_map import SampleMap
     from softafm.campaigns.scan import scan
+    from softafm.campaigns.sweep import load_sweep, sweep
 
 __all__ = [
     "DLVO",
     "DMT",
     "AccuracyWarning",
     "AmplitudeModulation",
+    "Between",
     "Cantilever",
     "Cone",
     "Contact",
@@ -117,6 +120,7 @@ __all__ = [
     "force_spectroscopy",
     "indentation",
     "load",
+    "load_sweep",
     "plot_contact",
     "plot_map",
     "plot_profiles",
@@ -130,16 +134,20 @@ __all__ = [
     "save",
     "scan",
     "solvers",
+    "sweep",
     "tapping_cycle",
 ]
 
 _LATER = {
     "AmplitudeModulation": "imaging",
+    "Between": "designs",
     "ForceVolume": "imaging",
     "SampleMap": "sample_map",
     "export_gwyddion": "gwyddion",
+    "load_sweep": "sweep",
     "plot_map": "map_drawing",
     "scan": "scan",
+    "sweep": "sweep",
 }
 """Names and their modules in ``campaigns``, imported when first asked for."""
 

@@ -6,6 +6,13 @@ from contextlib import contextmanager
 from threading import Timer
 
 _loaded: set[str] = set()
+_silent = False
+
+
+def silence() -> None:
+    """Announce nothing from now on: of many processes that work for one user, one speaks."""
+    global _silent
+    _silent = True
 
 
 @contextmanager
@@ -15,7 +22,7 @@ def announced_compilation(solver: str, patience: float = 3.0) -> Iterator[None]:
     Loading compiled code takes under a second; only a machine's first run waits for the compiler.
     Nothing is watched once the code of a ``solver`` is there.
     """
-    if solver in _loaded:
+    if _silent or solver in _loaded:
         yield
         return
     notice = Timer(

@@ -271,6 +271,68 @@ def export(
     typer.echo(f"saved {out}")
 
 
+@app.command()
+def sweep(
+    config: Annotated[
+        Path | None, typer.Argument(help="Experiment with a [sweep].", metavar="CAMPAIGN.toml")
+    ] = None,
+    out: Annotated[
+        Path | None, typer.Option(help="Store; default CAMPAIGN.zarr here.", metavar="STORE.zarr")
+    ] = None,
+    overrides: Overrides = None,
+    workers: Annotated[int | None, typer.Option(help="Processes; default one a core.")] = None,
+    scheduler: Annotated[
+        str | None, typer.Option(help="Of a Dask cluster, instead.", metavar="tcp://HOST:PORT")
+    ] = None,
+    resume: Annotated[bool, typer.Option("--resume", help="Go on with a store.")] = False,
+    yes: Annotated[bool, typer.Option("--yes", help="However many runs these are.")] = False,
+    status: Annotated[
+        Path | None, typer.Option(help="Tell how far a sweep is.", metavar="STORE.zarr")
+    ] = None,
+    force: Force = False,
+) -> None:
+    """Run an experiment for many values of its fields, and keep what all runs give."""
+    if (config is None) == (status is None):
+        raise _BadInput("sweep: give a CAMPAIGN.toml, or --status and a store")
+    with _bad_input():
+        try:
+            from softafm.campaigns import sweep as sweeps
+        except ModuleNotFoundError as error:
+            raise ValueError(error) from None
+        from softafm.campaigns import progress
+
+        if config is None:
+            assert status is not None
+            _print(progress.table(progress.status(status)))
+            return
+        out = Path(f"{config.stem}.zarr") if out is None else out
+        campaign, batch = sweeps.planned(config, overrides or [])
+        sweeps.refuse_size(campaign, scheduler, workers, yes)
+        ready = sweeps.prepared(
+            campaign, out, batch=batch, scheduler=scheduler, workers=workers, resume=resume,
+            force=force,
+        )  # fmt: skip
+    goes_on = f"what is finished is in {out}; --resume goes on with it"
+    try:
+        sweeps.finish(campaign, ready, scheduler, workers, progress=sys.stderr.isatty())
+    except KeyboardInterrupt:
+        raise _Failure(f"interrupted; {goes_on}") from None
+    except sweeps.Busy as error:
+        raise _BadInput(str(error)) from None
+    except sweeps.Halted as error:
+        raise _Failure(f"{error}; {goes_on}") from None
+    except OSError as error:
+        raise _Failure(
+            f"{out} could not be written: {error.strerror or error}; {goes_on}"
+        ) from None
+    found = progress.status(out)
+    if found.failed:
+        example = f"{found.failed} of {found.runs} runs failed: {found.example}"
+        print(f"softafm: warning: {example}", file=sys.stderr)
+    _print(progress.table(found))
+    typer.echo(f"saved {out}")
+
+
 @app.command(name="app")
 def page(
     port: Annotated[int | None, typer.Option(help="Port; default 5006, or any free one.")] = None,

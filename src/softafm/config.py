@@ -111,7 +111,7 @@ def load_experiment(path: str | Path, overrides: Sequence[str] = ()) -> Experime
         a field, the value given and what would be valid.
     """
     path = Path(path)
-    document = _parse(path)
+    document = load_document(path)
     for override in overrides:
         set_value(document, override)
     return experiment_from(document, path.parent)
@@ -131,8 +131,9 @@ def example_text(name: str) -> str:
     return file.read_text(encoding="utf-8")
 
 
-def _parse(path: Path) -> dict[str, Any]:
-    name = str(path)
+def load_document(path: str | Path) -> dict[str, Any]:
+    """Return the tables of a TOML file; ConfigError if it cannot be read."""
+    path, name = Path(path), str(path)
     try:
         if not path.is_file():
             raise ConfigError([f"{name}: {'is a directory' if path.is_dir() else 'no such file'}"])
@@ -194,8 +195,12 @@ def value_of(text: str) -> Any:
     return parsed["value"] if len(parsed) == 1 else text
 
 
-def experiment_from(document: Mapping[str, Any], folder: Path) -> Experiment:
+def experiment_from(
+    document: Mapping[str, Any], folder: Path, build: Callable[..., Any] | None = None
+) -> Experiment:
     """Build the experiment that a file's tables describe; other files are sought in ``folder``.
+
+    ``build`` may take the place of ``build_table``.
 
     Raises
     ------
@@ -225,7 +230,7 @@ def experiment_from(document: Mapping[str, Any], folder: Path) -> Experiment:
     built: dict[str, Any] = {}
     for name in tables:
         try:
-            built[name] = _build(name, document, mode, folder)
+            built[name] = (build or build_table)(name, document, mode, folder)
         except ConfigError as error:
             problems += str(error).splitlines()
     run, solver = built.get("run", schema.Run()), built.get("solver")
@@ -307,7 +312,7 @@ def _refuse_motion(contact: Contact, motion: Any, solver: Any, written: dict) ->
         raise ConfigError([as_written("motion", written, error) or str(error)]) from None
 
 
-def _build(name: str, document: Mapping[str, Any], mode: Any, folder: Path) -> Any:
+def build_table(name: str, document: Mapping[str, Any], mode: Any, folder: Path) -> Any:
     """Return the object that a table describes, having made sure that solvers can use it."""
     if name not in document:
         raise ConfigError([f"{name}: missing; add a table [{name}]"])
