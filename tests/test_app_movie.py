@@ -2,7 +2,6 @@
 
 import json
 from pathlib import Path
-from shutil import which
 
 import numpy as np
 import pytest
@@ -18,8 +17,6 @@ from softafm.app.colours import PALETTES, recolour
 from softafm.app.movie import FRAMES, movie
 from softafm.app.movie_data import movie_of
 from softafm.scenes import scenes_at, view_of, window
-
-CHROMIUM = which("chromium") or which("chromium-browser")
 
 
 @pytest.fixture(scope="module")
@@ -112,25 +109,20 @@ def test_colours_follow_the_theme(player):
 
 
 @pytest.fixture
-def page(player, tmp_path):
+def page(player, tmp_path, browser):
     """The player in a browser, as a page that needs nothing else."""
-    playwright = pytest.importorskip("playwright.sync_api")
-    if CHROMIUM is None:
-        pytest.skip("no chromium is installed")
     player.sizing_mode, player.height = "stretch_width", 600
     file = tmp_path / "movie.html"
     file.write_text(file_html(player, INLINE, "movie"), encoding="utf-8")
-    with playwright.sync_playwright() as started:
-        browser = started.chromium.launch(executable_path=CHROMIUM, args=["--no-sandbox"])
-        opened = browser.new_page(viewport={"width": 900, "height": 650})
-        opened.complaints = []
-        opened.on("pageerror", lambda error: opened.complaints.append(str(error)))
-        opened.on("console", lambda said: said.type in ("error", "warning")
-                  and opened.complaints.append(said.text))  # fmt: skip
-        opened.goto(file.as_uri())
-        opened.get_by_role("button", name="▶").wait_for()
-        yield opened
-        browser.close()
+    opened = browser.new_page(viewport={"width": 900, "height": 650})
+    opened.complaints = []
+    opened.on("pageerror", lambda error: opened.complaints.append(str(error)))
+    opened.on("console", lambda said: said.type in ("error", "warning")
+              and opened.complaints.append(said.text))  # fmt: skip
+    opened.goto(file.as_uri())
+    opened.get_by_role("button", name="▶").wait_for()
+    yield opened
+    opened.close()
 
 
 def columns(page, name, args):

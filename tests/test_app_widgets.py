@@ -1,7 +1,6 @@
 """The form in Python and in a browser."""
 
 import base64
-import shutil
 import socket
 import time
 
@@ -177,18 +176,6 @@ def test_messages_that_make_no_sense_change_nothing(form, tmp_path, message):
     assert form.document == TAP
     assert form.problems == {}
     assert list(tmp_path.iterdir()) == []
-
-
-@pytest.fixture(scope="module")
-def browser():
-    playwright = pytest.importorskip("playwright.sync_api", reason="no Playwright")
-    chromium = shutil.which("chromium") or shutil.which("chromium-browser")
-    if chromium is None:
-        pytest.skip("no Chromium: the form is not tried in a browser")
-    with playwright.sync_playwright() as started:
-        opened = started.chromium.launch(executable_path=chromium, args=["--no-sandbox"])
-        yield opened
-        opened.close()
 
 
 @pytest.fixture(scope="module")

@@ -7,44 +7,14 @@ import argparse
 from pathlib import Path
 from time import perf_counter
 
-import numpy as np
 from PIL import Image
-from scipy.ndimage import gaussian_filter
 
 import softafm as sa
+from softafm.campaigns.map_file import load_map
 
 IMAGES = Path(__file__).parents[1] / "images"
+BLEND = Path(sa.__file__).parent / "examples" / "maps" / "blend.toml"
 SETPOINTS = (0.9, 0.5)
-SIZE, DOMAIN, INTERPHASE = 600e-9, 45e-9, 20e-9
-TIP = sa.Paraboloid(10e-9)
-POLYSTYRENE = sa.Contact(TIP, sa.samples.polystyrene(), sa.LennardJones(2e-20, 0.15e-9))
-LDPE = sa.Contact(TIP, sa.samples.ldpe(), sa.LennardJones(1e-19, 0.25e-9))
-LEVER = sa.Cantilever(stiffness=28.1, quality_factor=429.5, frequency=278e3)
-FREE_AMPLITUDE = 20e-9
-
-
-def share_of_ldpe(pixels: int) -> np.ndarray:
-    """Share of polyethylene: domains cut from waves of random directions, with an interphase."""
-    pixel = SIZE / pixels
-    # A sum of waves, so that domains are the same however fine the pixels are.
-    random, field = np.random.default_rng(8), np.zeros((pixels, pixels))
-    x = (np.arange(pixels) + 0.5) * pixel
-    for _ in range(200):
-        angle, phase = 2 * np.pi * random.random(2)
-        k = np.pi / DOMAIN * random.uniform(0.5, 1.3)
-        field += np.cos(k * (np.cos(angle) * x + np.sin(angle) * x[:, None]) + phase)
-    domains = (field > 0.35 * field.std()).astype(float)
-    share = gaussian_filter(domains, INTERPHASE / 4 / pixel, mode="nearest")
-    return np.clip(1.1 * share - 0.05, 0, 1)
-
-
-def scanned(pixels: int, workers: int):
-    """Images of the flat blend at both setpoints."""
-    blend = sa.SampleMap.mixed(share_of_ldpe(pixels), POLYSTYRENE, LDPE, SIZE)
-    return blend, [
-        sa.scan(blend, sa.AmplitudeModulation(LEVER, FREE_AMPLITUDE, setpoint), workers=workers)
-        for setpoint in SETPOINTS
-    ]
 
 
 def main():
@@ -54,15 +24,16 @@ def main():
     parser.add_argument("--pixels", type=int, default=128)
     parser.add_argument("--workers", type=int, default=2)
     given = parser.parse_args()
+    pixels = f"map.pixels=[{given.pixels}, {given.pixels}]"
     started = perf_counter()
-    blend, images = scanned(given.pixels, given.workers)
+    maps = [load_map(BLEND, [pixels, f"motion.setpoint={each}"]) for each in SETPOINTS]
+    images = [each.run(given.workers) for each in maps]
     seconds = perf_counter() - started
-    different = len(blend.pixels.contacts)
+    different = images[0].attrs["different_pixels"]
     print(f"{given.pixels}² pixels, {different} different, two setpoints: {seconds:.0f} s")
-    polyethylene = blend.fields["sample.E_inf"] == LDPE.sample.E_inf
-    polystyrene = blend.fields["sample.E_inf"] == POLYSTYRENE.sample.E_inf
+    modulus = maps[0].sample.fields["sample.E_inf"]
     for setpoint, image in zip(SETPOINTS, images, strict=True):
-        for name, where in (("PS", polystyrene), ("LDPE", polyethylene)):
+        for name, where in (("PS", modulus == modulus.max()), ("LDPE", modulus == modulus.min())):
             told = {key: float(image[key].values[where].mean()) for key in
                     ("topography", "phase", "dissipation", "force_max", "indentation")}  # fmt: skip
             print(

@@ -108,20 +108,13 @@ def run(
     with _bad_input():
         from softafm import results
         from softafm.config import ConfigError, load_experiment
-        from softafm.progress import reporting
         from softafm.summary import observables
 
         experiment = load_experiment(config, changes)
         out = _output(out, f"{config.stem}.nc", (".nc",), force)
     with _visible_warnings():
         try:
-            with _heeding_interrupts() as heed, reporting(sys.stderr.isatty()) as report:
-
-                def progress(fraction: float, message: str) -> None:
-                    heed()
-                    if report is not None:
-                        report(fraction, message)
-
+            with _progress() as progress:
                 dataset = experiment.run(progress)
         except ConfigError as error:
             raise _BadInput(str(error)) from error
@@ -133,16 +126,55 @@ def run(
 
 
 @app.command()
+def scan(
+    config: Annotated[Path, typer.Argument(help="Map file in TOML.", metavar="MAP.toml")],
+    out: Annotated[Path | None, typer.Option(help="Result; default MAP.nc here.")] = None,
+    overrides: Overrides = None,
+    workers: Annotated[int | None, typer.Option(help="Processes; default one a core.")] = None,
+    force: Force = False,
+) -> None:
+    """Image the sample of a map file, save the maps and show their ranges."""
+    with _bad_input():
+        from softafm import results
+        from softafm._validate import whole
+        from softafm.campaigns.map_file import load_map
+        from softafm.config import ConfigError
+        from softafm.summary import observables
+
+        workers = _cores() if workers is None else whole("--workers", workers, 1, 1024)
+        experiment = load_map(config, overrides or [])
+        out = _output(out, f"{config.stem}.nc", (".nc",), force)
+    with _visible_warnings():
+        try:
+            with _progress() as progress:
+                dataset = experiment.run(workers, progress)
+        except ConfigError as error:
+            raise _BadInput(str(error)) from error
+        except RuntimeError as error:
+            raise _Failure(f"the scan failed: {error}") from error
+    _save(results.save, dataset, out, force)
+    _print(observables(dataset))
+    typer.echo(f"saved {out}")
+
+
+def _cores() -> int:
+    """Return how many cores this process may use."""
+    if hasattr(os, "sched_getaffinity"):
+        return max(1, len(os.sched_getaffinity(0)))
+    return os.cpu_count() or 1
+
+
+@app.command()
 def example(
     name: Annotated[str | None, typer.Argument(help="Which one; none lists them.")] = None,
     out: Annotated[Path | None, typer.Option(help="File; default NAME.toml here.")] = None,
     force: Force = False,
 ) -> None:
-    """List the bundled experiment files, or write one to start from."""
-    from softafm.config import example_names, example_text
+    """List the bundled experiment and map files, or write one to start from."""
+    from softafm.config import example_names, example_text, map_names
 
     if name is None:
-        for known in example_names():
+        for known in [*example_names(), *map_names()]:
             title = example_text(known).splitlines()[0].lstrip("# ")
             typer.echo(f"{known:20} {title}")
         typer.echo("write one with: softafm example NAME")
@@ -151,7 +183,8 @@ def example(
         text = example_text(name)
         out = _output(out, f"{name}.toml", (".toml",), force)
     _write(out, text.encode())
-    typer.echo(f"wrote {out}; run it with: softafm run {out}")
+    command = "scan" if name in map_names() else "run"
+    typer.echo(f"wrote {out}; run it with: softafm {command} {out}")
 
 
 @app.command()
@@ -257,17 +290,23 @@ def show(
 @app.command()
 def export(
     result: Result,
-    out: Annotated[Path, typer.Option(help="Curve (.csv) or all (.h5).", metavar="CURVE.csv")],
+    out: Annotated[
+        Path, typer.Option(help="Curve (.csv), maps (.gwy) or all (.h5).", metavar="CURVE.csv")
+    ],
     force: Force = False,
 ) -> None:
-    """Write the curve of a result as text for other programs."""
+    """Write the curve of a result as text, or maps for Gwyddion, for other programs."""
     with _bad_input():
-        out = _output(out, "", (".csv", ".h5"), force)
+        out = _output(out, "", (".csv", ".gwy", ".h5"), force)
 
-        from softafm import results
+        from softafm import export_gwyddion, results
 
         dataset = results.load(result)
-    _save(results.export, dataset, out, force)
+        write = export_gwyddion if out.suffix.lower() == ".gwy" else results.export
+        try:
+            _save(write, dataset, out, force)
+        except ImportError as error:
+            raise ValueError(error) from None
     typer.echo(f"saved {out}")
 
 
@@ -345,8 +384,12 @@ def page(
     browser: Annotated[bool, typer.Option(help="Open the page in the browser.")] = True,
     processes: Annotated[int, typer.Option(help="Runs at the same time.")] = 1,
     waiting: Annotated[int, typer.Option(help="Runs of one user that may wait.")] = 4,
+    listed: Annotated[int, typer.Option(help="Runs that one user may keep.")] = 20,
     run_limit: Annotated[str, typer.Option(help="Longest run.", metavar="TIME")] = "600 s",
     upload_limit: Annotated[float, typer.Option(help="Largest file, MB.", metavar="MB")] = 20.0,
+    memory_limit: Annotated[
+        float, typer.Option(help="Memory for results of one user, MB.", metavar="MB")
+    ] = 500.0,
 ) -> None:
     """Open the web page: forms, plots and surface movies; needs softafm[app]."""
     with _bad_input():
@@ -360,8 +403,10 @@ def page(
         limits = Limits(
             processes=processes,
             waiting=waiting,
+            listed=listed,
             run_seconds=_time("run-limit", run_limit) or 0.0,
             upload_bytes=int(1e6 * upload_limit),
+            kept_bytes=int(1e6 * memory_limit),
         )
         serve(limits, address, port, tuple(origin or ()), browser)
 
@@ -440,6 +485,21 @@ def _print(renderable) -> None:
     from rich.console import Console
 
     Console().print(renderable)
+
+
+@contextmanager
+def _progress() -> Iterator[Callable[[float, str], None]]:
+    """Yield what a run is to call with its progress: a bar on a terminal, and Ctrl-C heeded."""
+    from softafm.progress import reporting
+
+    with _heeding_interrupts() as heed, reporting(sys.stderr.isatty()) as report:
+
+        def progress(fraction: float, message: str) -> None:
+            heed()
+            if report is not None:
+                report(fraction, message)
+
+        yield progress
 
 
 @contextmanager

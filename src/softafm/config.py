@@ -119,15 +119,26 @@ def load_experiment(path: str | Path, overrides: Sequence[str] = ()) -> Experime
 
 def example_names() -> list[str]:
     """Return the names of the bundled experiment files."""
-    folder = resources.files("softafm") / "examples"
+    return _bundled("examples")
+
+
+def map_names() -> list[str]:
+    """Return the names of the bundled map files, which ``softafm scan`` takes."""
+    return _bundled("examples", "maps")
+
+
+def _bundled(*folders: str) -> list[str]:
+    folder = resources.files("softafm").joinpath(*folders)
     return sorted(f.name[:-5] for f in folder.iterdir() if f.name.endswith(".toml"))
 
 
 def example_text(name: str) -> str:
-    """Return a bundled experiment file; ConfigError if there is none of that name."""
-    if name not in example_names():
-        raise ConfigError([f"example {shown(name)}: unknown; {nearest(name, example_names())}"])
-    file = resources.files("softafm") / "examples" / f"{name}.toml"
+    """Return a bundled experiment or map file; ConfigError if there is none of that name."""
+    known = [*example_names(), *map_names()]
+    if name not in known:
+        raise ConfigError([f"example {shown(name)}: unknown; {nearest(name, known)}"])
+    folders = ("examples", "maps") if name in map_names() else ("examples",)
+    file = resources.files("softafm").joinpath(*folders, f"{name}.toml")
     return file.read_text(encoding="utf-8")
 
 
@@ -207,6 +218,8 @@ def experiment_from(
     ConfigError
         As ``load_experiment``.
     """
+    if "map" in document:
+        raise ConfigError(["map: the file describes a map, which 'softafm scan' takes"])
     problems: list[str] = []
     mode = document.get("mode")
     known = ["mode", *_TABLES, "cantilever", *_OPTIONAL_TABLES]

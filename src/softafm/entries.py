@@ -12,6 +12,7 @@ from softafm._validate import finite, tabor_of, tolerance_of, whole
 from softafm.refusals import one_of
 
 _MOST_RATIOS = 1000
+_MOST_PIXELS = 4096
 
 
 @dataclass(frozen=True)
@@ -125,11 +126,32 @@ def _list(written: Any) -> Any:
     return tuple(written)
 
 
-def _file(written: Any, info: ValidationInfo) -> Path:
+def _file(
+    written: Any, info: ValidationInfo, valid: str = "a CSV file, such as 'approach.csv'"
+) -> Path:
     if not isinstance(written, str) or not written or "\0" in written:
-        raise ValueError("must be the name of a CSV file, such as 'approach.csv'")
+        raise ValueError(f"must be the name of {valid}")
     folder = info.context["folder"] if info.context else Path()
     return folder / written
+
+
+def _image(written: Any, info: ValidationInfo) -> Path:
+    return _file(written, info, "an image or .npy, such as 'grains.png'")
+
+
+def _pixels(written: Any) -> tuple[int, int]:
+    valid = f"two whole numbers from 1 to {_MOST_PIXELS}, along x and y, such as [128, 128]"
+    try:
+        along_x, along_y = _list(written)
+        return whole("", along_x, 1, _MOST_PIXELS), whole("", along_y, 1, _MOST_PIXELS)
+    except (TypeError, ValueError):
+        raise ValueError(f"must be {valid}") from None
+
+
+def _two(written: Any) -> Any:
+    if not isinstance(written, list) or len(written) != 2:
+        raise ValueError("must be two lengths, along x and y, such as ['500 nm', '500 nm']")
+    return tuple(written)
 
 
 Length = Annotated[float, *_quantity(units.LENGTH)]
@@ -164,5 +186,8 @@ Flag = Annotated[bool, BeforeValidator(_flag), Input("flag")]
 Tolerance = Annotated[float, BeforeValidator(_tolerance), Input("number", "0.01")]
 Tabor = Annotated[float, BeforeValidator(_tabor), Input("number", "8")]
 File = Annotated[Path, *_described(_file, "the name of a CSV file", Input("file", "approach.csv"))]
+Image = Annotated[Path, *_described(_image, "the name of an image", Input("file", "grains.png"))]
+Pixels = Annotated[tuple[int, int], BeforeValidator(_pixels), Input("list", "128")]
+Extent = Annotated[tuple[Length, Length], BeforeValidator(_two), Input("list", "500 nm", unit="m")]
 Whole = Annotated[Any, BeforeValidator(_whole), Input("number", "100")]
 Entries = Annotated[tuple[Any, ...], BeforeValidator(_list), Input("tables")]

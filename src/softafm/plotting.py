@@ -45,8 +45,8 @@ def plot(
     matplotlib.figure.Figure
         Force-distance curves; deflection and force in spectroscopy against time, base and tip
         height; force of a tap against time and tip height; phase, dissipation and virial of an
-        approach curve against amplitude ratio, and amplitude against height. Save it with
-        ``figure.savefig``.
+        approach curve against amplitude ratio, and amplitude against height; maps as by
+        ``plot_map``. Save it with ``figure.savefig``.
 
     Raises
     ------
@@ -61,6 +61,8 @@ def plot(
         "force-distance": _force_distance,
         "force-spectroscopy": _force_spectroscopy,
         "tapping-cycle": _tapping_cycle,
+        "amplitude-modulation": _maps,
+        "force-volume": _maps,
         "approach-curve": approach_curve,
     }
     if len(modes) == 1 and modes[0] in figures:
@@ -69,6 +71,12 @@ def plot(
     raise ValueError(
         f"mode = {', '.join(modes)}: must be {', '.join(others)} or {last}, the same for all"
     )
+
+
+def _maps(runs: list[xr.Dataset], names: list[str]) -> Figure:
+    from softafm.campaigns.map_drawing import plot_map
+
+    return plot_map(runs, labels=names if len(runs) > 1 else None)
 
 
 def _force_distance(runs: list[xr.Dataset], names: list[str]) -> Figure:

@@ -338,7 +338,7 @@ def _thing(*constructors: Callable) -> type[Thing]:
     """Return the table of what a class, or another of its constructors, makes."""
     needed = _needed_by_all(constructors)
     names = dict.fromkeys(key for make in constructors for key in _keys_of(make)[1])
-    keys: dict[str, Any] = {key: (_KEYS[key], ... if key in needed else None) for key in names}
+    keys: dict[str, Any] = {key: (KEYS[key], ... if key in needed else None) for key in names}
     table = create_model(constructors[0].__name__, __base__=Thing, **keys)
     table.constructors = constructors
     table.alternatives = (_ways(constructors),) if len(constructors) > 1 else ()
@@ -365,7 +365,7 @@ def _keys_of(constructor: Callable) -> tuple[list[str], dict[str, str]]:
     return needed, {key: name for name, key in key_of.items()}
 
 
-_KEYS: dict[str, Any] = {
+KEYS: dict[str, Any] = {
     **dict.fromkeys(
         ("radius", "apex_radius", "edge_radius", "height", "z0", "decay", "core", "debye_length",
          "cutoff"),

@@ -26,6 +26,8 @@ def observables(dataset: "Dataset") -> Table:
             if name in differences:
                 words += f"; check {_percent(differences[name])}"
             table.add_row(str(name), value, words)
+    if {"y", "x"} <= set(dataset.dims):
+        _add_map(table, dataset)
     if "jump_time" in dataset:
         table.add_row("jumps", str(dataset["jump_time"].size), "elastic instabilities crossed")
     if "branch" in dataset.dims:
@@ -83,6 +85,23 @@ def _add_branches(table: Table, dataset: "Dataset") -> None:
             words = f"{lengths}, {phase[0]:.0f}° to {phase[1]:.0f}°"
             table.add_row(f"jump on {direction}", height, words)
     table.add_row("taps", str(int(dataset.attrs["solver_taps"])), "that were run")
+
+
+def _add_map(table: Table, dataset: "Dataset") -> None:
+    """Tell mean and range of every map."""
+    for name, variable in dataset.data_vars.items():
+        values = variable.values[np.isfinite(variable.values)]
+        if variable.dims != ("y", "x") or not values.size:
+            continue
+        low, mean, high = (
+            readable(float(each), variable.attrs.get("units", ""))
+            for each in (values.min(), values.mean(), values.max())
+        )
+        table.add_row(str(name), mean, "everywhere" if low == high else f"{low} to {high}")
+    failed = len(json.loads(dataset.attrs.get("failures", "[]")))
+    words = f"{dataset.attrs['different_pixels']} different"
+    words += f"; {failed} without a result" if failed else ""
+    table.add_row("pixels", f"{dataset.sizes['x']} × {dataset.sizes['y']}", words)
 
 
 def _degrees(phase: np.ndarray) -> str:

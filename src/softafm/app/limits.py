@@ -21,6 +21,9 @@ class Limits:
         How long a run may be expected to take, and may take, s.
     upload_bytes
         Size of the largest file that is accepted, bytes.
+    kept_bytes
+        Memory from which on the results of one user leave no room for another, bytes; no single
+        one may have more.
 
     Raises
     ------
@@ -33,6 +36,7 @@ class Limits:
     listed: int = 20
     run_seconds: float = 600.0
     upload_bytes: int = 20_000_000
+    kept_bytes: int = 500_000_000
 
     def __post_init__(self):
         whole("processes", self.processes, 1, 256)
@@ -40,3 +44,4 @@ class Limits:
         whole("listed", self.listed, 1, 1000)
         positive("run_seconds", self.run_seconds, "s")
         whole("upload_bytes", self.upload_bytes, 1000, 2_000_000_000)
+        whole("kept_bytes", self.kept_bytes, 1000, 10**12)

@@ -1,4 +1,4 @@
-// Header, run bar and list of runs: which of them `model.part` says. Texts are only set as text.
+// Header, run bar, list of runs and regime: which of them `model.part` says. Texts are only set as text.
 
 function make(tag, properties = {}, ...children) {
   const { aria, ...rest } = properties;
@@ -8,17 +8,31 @@ function make(tag, properties = {}, ...children) {
   return node;
 }
 
+// What is typed is sent when typing pauses, or now.
+function send_typed() {
+  let at = document.activeElement;
+  while (at?.shadowRoot) at = at.shadowRoot.activeElement;
+  if (at?.type === "text") at.dispatchEvent(new Event("change"));
+}
+
+// What the page fills: the whole window, or its cell of a notebook.
+function frame(el) {
+  let node = el;
+  while (node.getRootNode() instanceof ShadowRoot) node = node.getRootNode().host;
+  return node.classList.contains("softafm-cell") ? node : document.documentElement;
+}
+
 const parts = {
-  header({ model, el, send }) {
+  header({ model, el, send, view }) {
     const theme = make("button", { className: "theme", type: "button" });
     const apply = (name, told) => {
       theme.textContent = name === "dark" ? "light" : "dark";
       theme.setAttribute("aria-label", `switch to ${theme.textContent} colours`);
-      document.documentElement.dataset.softafm = name;
+      frame(el).dataset.softafm = name;
       if (told) send({ theme: name });
     };
     theme.addEventListener("click", () => {
-      const wanted = document.documentElement.dataset.softafm === "dark" ? "light" : "dark";
+      const wanted = frame(el).dataset.softafm === "dark" ? "light" : "dark";
       try { localStorage.setItem("softafm-theme", wanted); } catch { /* it is only for comfort */ }
       apply(wanted, true);
     });
@@ -33,16 +47,25 @@ const parts = {
       send({ open: given.name, content: btoa(chunks.join("")) });
       file.value = "";
     });
+    const reload = make("button", { type: "button" }, "reload the page");
+    reload.addEventListener("click", () => location.reload());
+    const lost = make("p", { className: "bar lost", hidden: true }, "The server cannot be reached. "
+      + "The form is kept in the address of this page, the runs are not.", reload);
+    lost.setAttribute("role", "alert");
     el.append(make("div", { className: "bar header" }, make("h1", {}, "softafm"),
       make("span", { className: "about" }, "atomic force microscopy on soft, sticky, viscoelastic surfaces"),
       make("span", { className: "space" }),
       make("label", { className: "button", title: "an experiment (.toml) or a result (.nc)" },
         "open a file", file),
-      theme));
+      theme), lost);
+    view.model.document?.on_event("connection_lost", () => { lost.hidden = false; });
     let kept = null;
     try { kept = localStorage.getItem("softafm-theme"); } catch { /* as above */ }
-    const dark = window.matchMedia("(prefers-color-scheme: dark)").matches;
+    const light = document.body.dataset.jpThemeLight; // told by Jupyter alone
+    const dark = light ? light === "false"
+      : window.matchMedia("(prefers-color-scheme: dark)").matches;
     apply(kept ?? (dark ? "dark" : "light"), true);
+    frame(el).dataset.lmSuppressShortcuts = "true"; // Jupyter's, for keys pressed in the page
     return () => {};
   },
 
@@ -54,7 +77,10 @@ const parts = {
     run.addEventListener("click", () => send({ run: true }));
     movie.addEventListener("change", () => send({ movie: movie.checked }));
     document.addEventListener("keydown", (event) => {
-      if (event.key === "Enter" && (event.ctrlKey || event.metaKey) && !run.disabled) run.click();
+      if (event.key !== "Enter" || event.repeat || !(event.ctrlKey || event.metaKey)) return;
+      if (!event.composedPath().includes(frame(el))) return;
+      send_typed();
+      send({ run: true });
     });
     el.append(make("div", { className: "run-bar" },
       make("div", { className: "bar" }, run,
@@ -67,6 +93,18 @@ const parts = {
       movie.disabled = !state.can_film;
       words.textContent = state.words;
       words.classList.toggle("bad", state.bad);
+    };
+  },
+
+  regime({ model, el }) {
+    const caption = make("caption");
+    const body = make("tbody");
+    el.append(make("table", {}, caption, body));
+    return () => {
+      const { state } = model;
+      caption.textContent = state.caption;
+      body.replaceChildren(...state.rows.map((row) => make("tr", {}, ...row.map((text, column) =>
+        make("td", { className: state.bad && column === 1 ? "problem" : "" }, text)))));
     };
   },
 
@@ -121,8 +159,8 @@ const parts = {
   },
 };
 
-export function render({ model, el }) {
-  const follow = parts[model.part]({ model, el, send: (message) => model.send_msg(message) });
+export function render({ model, el, view }) {
+  const follow = parts[model.part]({ model, el, view, send: (message) => model.send_msg(message) });
   model.on("state", follow);
   follow();
 }

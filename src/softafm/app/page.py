@@ -15,17 +15,19 @@ from softafm.app.documents import with_value
 from softafm.app.form import presets
 from softafm.app.limits import Limits
 from softafm.app.links import from_query, to_query
+from softafm.app.notebook import FRAME, load_panel, shared_runner
+from softafm.app.rows import about, row_of
 from softafm.app.runs import Runner
 from softafm.app.session import Entry, Session, refuse_large
-from softafm.app.tables import regime_html
-from softafm.app.views import html, views
+from softafm.app.tables import regime_table
+from softafm.app.views import views
 from softafm.app.widgets import Form
 from softafm.config import document_from
 from softafm.refusals import ConfigError
-from softafm.units import readable
 
 FIRST = "ldpe-tapping"
 _REGIME = "Regime"
+_LINE = "1px solid var(--softafm-line)"
 _BETWEEN_LOOKS = 150
 """Time between two looks at runs that go on, ms."""
 
@@ -36,7 +38,7 @@ def resource(name: str) -> str:
 
 
 class Piece(pn.custom.JSComponent):
-    """Header, run bar or list of runs, as ``page.js`` draws them."""
+    """Header, run bar, list of runs or regime, as ``page.js`` draws them."""
 
     part = param.String()
     state = param.Dict(default={})
@@ -57,7 +59,7 @@ class Page(pn.viewable.Viewer):
     Parameters
     ----------
     runner
-        What carries out the runs, by default one of its own, of one process.
+        What carries out the runs, by default one that all such pages of this process share.
     limits
         What the user may ask for.
     """
@@ -65,9 +67,9 @@ class Page(pn.viewable.Viewer):
     def __init__(self, runner: Runner | None = None, limits: Limits | None = None, **params):
         super().__init__(**params)
         self.limits = limits or Limits()
-        if runner is None:
-            runner = Runner(1, self.limits.waiting, self.limits.run_seconds)
-            runner.start()
+        runner = runner or shared_runner(self.limits)
+        self._served = pn.state.curdoc is not None
+        self._displayed = False
         self.theme: Theme = "light"
         self._movie, self._selected, self._notice = True, "", ""
         self._drawn: Any = None
@@ -78,7 +80,7 @@ class Page(pn.viewable.Viewer):
         self._header.state = {"largest": self.limits.upload_bytes}
         self._bar = Piece(self.answer, part="bar", sizing_mode="stretch_width")
         self._list = Piece(self.answer, part="list", sizing_mode="stretch_width")
-        self._regime = html("")
+        self._regime = Piece(self.answer, part="regime", sizing_mode="stretch_width")
         self._tabs = pn.Tabs(
             (_REGIME, pn.Column(self._regime, scroll=True, sizing_mode="stretch_both")),
             dynamic=True,
@@ -86,13 +88,24 @@ class Page(pn.viewable.Viewer):
             stylesheets=[resource("tabs.css")],
         )
         self._layout = self._laid_out()
-        self._read_address()
         self.form.param.watch(self._follow_form, ["document", "outlook"])
+        query = "" if self._location is None else self._location.search
         self._follow_form()
+        self._read(query)
         self._refresh()
 
     def __panel__(self):
         return self._layout
+
+    def _repr_mimebundle_(self, include=None, exclude=None):
+        load_panel()
+        self._displayed = True
+        return super()._repr_mimebundle_(include, exclude)
+
+    @property
+    def results(self) -> dict[str, Any]:
+        """What the runs in the list found, as datasets by label."""
+        return {e.label: e.result for e in self.session.entries if e.state == "done"}
 
     def answer(self, message: Any) -> None:
         """Take what the browser sent; what is malformed or late is left aside."""
@@ -132,10 +145,11 @@ class Page(pn.viewable.Viewer):
         return entry
 
     def close(self) -> None:
-        """End all runs of this page."""
+        """End all runs of this page, and forget its files."""
         if self._looking is not None:
             self._looking.stop()
         self.session.close()
+        self.form.close()
 
     @property
     def _can_film(self) -> bool:
@@ -165,8 +179,12 @@ class Page(pn.viewable.Viewer):
             given = base64.b64decode(content, validate=True)
             refuse_large(given, self.limits)
             if Path(name).suffix.lower() == ".nc":
-                return self.session.upload(name, given)
-            self.form.document = document_from(given.decode("utf-8-sig"), name)
+                return self._uploaded(name, given)
+            try:
+                text = given.decode("utf-8-sig")
+            except UnicodeDecodeError:
+                raise ValueError(f"{name}: neither a result (.nc) nor text") from None
+            self.form.document = document_from(text, name)
             return None
 
         with suppress(binascii.Error):
@@ -174,29 +192,41 @@ class Page(pn.viewable.Viewer):
             if entry is not None:
                 self._selected = entry.id
 
+    def _uploaded(self, name: str, content: bytes) -> Entry:
+        """List a result from a file, if it can be drawn."""
+        entry = self.session.upload(name, content)
+        try:
+            views([entry], entry, self.form.folder, self.theme, self._address)
+        except Exception as error:
+            self.session.remove(entry.id)
+            raise ValueError(f"{name}: a result that cannot be drawn ({error!r})") from error
+        return entry
+
     def _take_theme(self, theme: Theme) -> None:
         self.theme = theme
         for pane in self._tabs:
             if isinstance(pane, pn.pane.Bokeh):
                 recolour(pane.object, theme)
+        if self._displayed:
+            pn.io.push_notebook(self._layout)
 
     def _follow_form(self, *_: Any) -> None:
         found = self.form.outlook
-        self._regime.object = regime_html(found.rows, self.form.problems)
+        self._regime.state = regime_table(found.rows, self.form.problems)
         self._notice = ""
         self._write_address()
         self._refresh()
 
     def _look(self) -> None:
         """Look after runs that go on, from now on."""
-        if self._looking is None and pn.state.curdoc is not None:
+        if self._looking is None and (self._served or self._displayed):
             self._looking = pn.state.add_periodic_callback(self._refresh, _BETWEEN_LOOKS)
 
     def _refresh(self) -> None:
         """Bring bar, list and tabs up to date."""
         self._bar.state = self._bar_state()
         self._list.state = {
-            "runs": [_row(entry) for entry in self.session.entries],
+            "runs": [row_of(entry) for entry in self.session.entries],
             "selected": self._selected,
         }
         self._draw()
@@ -211,7 +241,7 @@ class Page(pn.viewable.Viewer):
             count = len(problems)
             words, bad = f"{count} value{'s' * (count > 1)} to mend before it can run", True
         elif not words and seconds is not None:
-            words = f"expected to take {_about(seconds)}"
+            words = f"expected to take {about(seconds)}"
         return {
             "can_run": not problems,
             "words": words,
@@ -245,17 +275,21 @@ class Page(pn.viewable.Viewer):
             query = to_query(document)
         except ConfigError as error:
             return f"none: {error}"
-        location = pn.state.location
+        location = self._location
         start = "" if location is None else f"{location.href}".split("?")[0].split("#")[0]
         return f"{start}?{query}"
 
-    def _write_address(self) -> None:
-        if pn.state.location is not None:
-            with suppress(ConfigError):
-                pn.state.location.search = f"?{to_query(self.form.document)}"
+    @property
+    def _location(self) -> Any:
+        """The address of the page; None in a notebook, whose address is not ours."""
+        return pn.state.location if self._served else None
 
-    def _read_address(self) -> None:
-        query = "" if pn.state.location is None else pn.state.location.search
+    def _write_address(self) -> None:
+        if self._location is not None:
+            with suppress(ConfigError):
+                self._location.search = f"?{to_query(self.form.document)}"
+
+    def _read(self, query: str) -> None:
         if query.strip("?"):
 
             def attempt():
@@ -269,7 +303,7 @@ class Page(pn.viewable.Viewer):
             self._bar,
             width=400,
             sizing_mode="stretch_height",
-            css_classes=["softafm-left"],
+            styles={"border-right": _LINE},
         )
         right = pn.Column(
             self._tabs,
@@ -278,55 +312,15 @@ class Page(pn.viewable.Viewer):
                 scroll="y",
                 height=118,
                 sizing_mode="stretch_width",
-                css_classes=["softafm-runs"],
+                styles={"border-top": _LINE, "padding-top": "4px"},
             ),
             sizing_mode="stretch_both",
             margin=(0, 12, 0, 12),
         )
+        frame = {"sizing_mode": "stretch_both"} if self._served else FRAME
         return pn.Column(
             self._header,
             pn.Row(left, right, sizing_mode="stretch_both"),
-            sizing_mode="stretch_both",
-            css_classes=["softafm-page"],
+            stylesheets=[] if self._served else [resource("frame.css")],
+            **frame,
         )
-
-
-def _row(entry: Entry) -> dict[str, Any]:
-    words, bad = _state_in_words(entry)
-    return {
-        "id": entry.id,
-        "label": entry.label,
-        "colour": entry.colour,
-        "shown": entry.shown,
-        "state": entry.state,
-        "fraction": entry.job.fraction if entry.job else 1.0,
-        "words": words,
-        "bad": bad,
-    }
-
-
-def _state_in_words(entry: Entry) -> tuple[str, bool]:
-    """Return where an entry stands, and whether that is bad."""
-    job = entry.job
-    if job is None:
-        return "uploaded", False
-    if entry.state == "waiting":
-        return f"waiting, number {job.place} in the queue", False
-    if entry.state == "running":
-        left = "" if job.remaining is None else f", about {_about(job.remaining)} left"
-        return f"{_about(job.elapsed)}{left}; {job.message}".rstrip("; "), False
-    if entry.state == "done":
-        warned = f"; doubtful: {' '.join(entry.warnings)}" if entry.warnings else ""
-        return f"done in {_about(job.elapsed)}{warned}", bool(warned)
-    return (job.problem or entry.state), entry.state == "failed"
-
-
-def _about(seconds: float) -> str:
-    """Return a time as people say it."""
-    if seconds < 1:
-        return readable(float(f"{seconds:.2g}"), "s")
-    if seconds < 60:
-        return f"{seconds:.0f} s"
-    if seconds < 3600:
-        return f"{seconds / 60:.0f} min"
-    return f"{seconds / 3600:.1f} h"

@@ -26,15 +26,20 @@ _THREADS = ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS", "VECLI
 class Process:
     """A process that waits for runs, with only so much of our environment as it needs.
 
+    Parameters
+    ----------
+    largest
+        Size above which a result is refused, bytes.
+
     Attributes
     ----------
     warm
         Whether it has said that it is ready.
     """
 
-    def __init__(self) -> None:
+    def __init__(self, largest: int = 500_000_000) -> None:
         # Not multiprocessing: its children import the parent's script, and get all its environment.
-        command = [sys.executable, "-P", "-m", "softafm.app.worker"]
+        command = [sys.executable, "-P", "-m", "softafm.app.worker", str(largest)]
         self._process = subprocess.Popen(
             command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, env=_environment()
         )

@@ -99,10 +99,19 @@ class Runner:
         How many runs one user may have waiting.
     time_limit
         Time after which a run is ended, s.
+    largest
+        Size above which a result is refused, bytes.
     """
 
-    def __init__(self, processes: int = 1, per_user: int = 4, time_limit: float = 600.0):
-        self.processes, self.per_user, self.time_limit = processes, per_user, time_limit
+    def __init__(
+        self,
+        processes: int = 1,
+        per_user: int = 4,
+        time_limit: float = 600.0,
+        largest: int = 500_000_000,
+    ):
+        self.processes, self.per_user = processes, per_user
+        self.time_limit, self.largest = time_limit, largest
         self._changed = threading.Condition(threading.RLock())
         self._waiting: list[Job] = []
         self._running: dict[Job, Process] = {}
@@ -215,7 +224,7 @@ class Runner:
 
     def _new_process(self) -> Process:
         """Start a process and wait until it is warm or gone."""
-        process = Process()
+        process = Process(self.largest)
         with self._changed:
             self._alive.add(process)
             if self._closed:

@@ -1,16 +1,22 @@
 """``softafm app``: the page as a server, on this machine or for others."""
 
+import signal
 import threading
 import webbrowser
+from contextlib import suppress
+from errno import EADDRINUSE
 from typing import Any
 
 import panel as pn
+from panel.io.resources import LOCAL_DIST
 
 from softafm.app.limits import Limits
 from softafm.app.page import Page, resource
 from softafm.app.runs import Runner
 
 _PORT = 5006
+_ABANDONED = 5000
+"""Time after which a page that nobody looks at any more is forgotten, with its runs, ms."""
 
 
 def serve(
@@ -20,7 +26,7 @@ def serve(
     origins: tuple[str, ...] = (),
     show: bool = True,
 ) -> None:
-    """Serve the page until interrupted.
+    """Serve the page until interrupted, or told to terminate.
 
     Parameters
     ----------
@@ -38,7 +44,7 @@ def serve(
     ValueError
         If the port is taken or the address not ours.
     """
-    runner = Runner(limits.processes, limits.waiting, limits.run_seconds)
+    runner = Runner(limits.processes, limits.waiting, limits.run_seconds, limits.kept_bytes)
     server = _server(runner, limits, address, port, origins)
     with runner:
         server.start()
@@ -46,8 +52,10 @@ def serve(
         print(f"softafm: the page is at {url} (Ctrl-C ends it)", flush=True)
         if show:
             threading.Thread(target=webbrowser.open, args=(url,), daemon=True).start()
+        signal.signal(signal.SIGTERM, signal.default_int_handler)
         try:
-            server.io_loop.start()
+            with suppress(KeyboardInterrupt):
+                server.io_loop.start()
         finally:
             server.stop()
             print("softafm: the page is closed", flush=True)
@@ -55,6 +63,8 @@ def serve(
 
 def page(runner: Runner, limits: Limits) -> Page:
     """Return a page for one more user, who takes its runs along when leaving."""
+    # Otherwise Panel asks an outside address for the styles of what it draws later.
+    pn.state.curdoc.template_variables["dist_url"] = LOCAL_DIST
     one = Page(runner, limits)
     pn.state.on_session_destroyed(lambda _: one.close())
     return one
@@ -76,15 +86,17 @@ def _server(
             start=False,
             websocket_origin=list(origins) or None,
             websocket_max_message_size=int(1.4 * limits.upload_bytes) + 1_000_000,
+            check_unused_sessions_milliseconds=1000,
+            unused_session_lifetime_milliseconds=_ABANDONED,
             autoreload=False,
             admin=False,
             verbose=False,
         )
     except OSError as error:
-        if port is None:
+        if port is None and error.errno == EADDRINUSE:
             return _server(runner, limits, address, 0, origins)
-        reason = error.strerror or error
-        raise ValueError(f"--address = {address}, --port = {port}: {reason}") from None
+        asked = f"--address = {address}" + ("" if port is None else f", --port = {port}")
+        raise ValueError(f"{asked}: {error.strerror or error}") from None
 
 
-pn.config.raw_css = [*pn.config.raw_css, resource("whole.css")]
+pn.config.raw_css = [*pn.config.raw_css, resource("frame.css"), resource("whole.css")]

@@ -16,6 +16,8 @@ if TYPE_CHECKING:
     from xarray import Dataset
 
 _LONGEST_LABEL = 60
+_HDF5 = b"\x89HDF\r\n\x1a\n"
+"""What files begin with that ``softafm.save`` writes."""
 
 
 @dataclass(eq=False)
@@ -47,6 +49,11 @@ class Entry:
         if result is None:
             raise LookupError(f"{self.label} has no result")
         return result
+
+    @property
+    def size(self) -> int:
+        """Memory that its result takes, bytes."""
+        return self.result.nbytes if self.state == "done" else 0
 
     @property
     def warnings(self) -> tuple[str, ...]:
@@ -112,15 +119,15 @@ class Session:
         ValueError
             If it is none, is too large, or too many are listed.
         """
-        from softafm.results import load
-
         self._refuse_more()
         refuse_large(content, self._limits)
+        if not content.startswith(_HDF5):
+            raise ValueError(f"{name}: not a NetCDF file that softafm wrote")
         with TemporaryDirectory() as folder:
             path = Path(folder) / "result.nc"
             path.write_bytes(content)
             try:
-                result = load(path)
+                result = _loaded(path, self._limits.kept_bytes)
             except ValueError as error:
                 raise ValueError(str(error).replace(str(path), name)) from None
         return self._add(Path(name).stem, {}, uploaded=result)
@@ -155,6 +162,11 @@ class Session:
         most = self._limits.listed
         if len(self.entries) >= most:
             raise ValueError(f"{most} runs are listed, as many as may be: remove some first")
+        kept = sum(entry.size for entry in self.entries)
+        if kept >= self._limits.kept_bytes:
+            raise ValueError(
+                f"the results listed take {kept / 1e6:.0f} MB of memory: remove some first"
+            )
 
     def _add(self, name: str, document: Mapping[str, Any], **parts: Any) -> Entry:
         self._count += 1
@@ -164,6 +176,22 @@ class Session:
         entry = Entry(uuid4().hex[:12], label, colour, document, **parts)
         self.entries.append(entry)
         return entry
+
+
+def _loaded(path: Path, most: int) -> "Dataset":
+    """Read a result, which a few bytes of a compressed file may stand for very many of."""
+    from xarray import open_dataset
+
+    from softafm.results import load
+
+    try:
+        with open_dataset(path, engine="h5netcdf") as unread:
+            size = unread.nbytes
+    except Exception as problem:
+        raise ValueError(f"{path}: not a readable NetCDF file ({problem})") from None
+    if size > most:
+        raise ValueError(f"{path}: has {size / 1e6:.0f} MB unpacked: at most {most / 1e6:g} MB")
+    return load(path)
 
 
 def refuse_large(content: bytes, limits: Limits) -> None:

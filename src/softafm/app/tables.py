@@ -33,15 +33,11 @@ pre {
 """
 
 
-def regime_html(rows: Sequence["Row"], problems: Mapping[str, str]) -> str:
-    """Return what an experiment will be, or why it cannot run."""
+def regime_table(rows: Sequence["Row"], problems: Mapping[str, str]) -> dict[str, Any]:
+    """Return what an experiment will be, or why it cannot run, for ``page.js`` to draw."""
     if problems:
-        lines = "".join(
-            f"<tr><td>{escape(path)}</td><td class='problem'>{escape(reason)}</td></tr>"
-            for path, reason in problems.items()
-        )
-        return f"<table><caption>Before it can run</caption>{lines}</table>"
-    return _table("Before any run", rows)
+        return {"caption": "Before it can run", "rows": list(problems.items()), "bad": True}
+    return {"caption": "Before any run", "rows": [list(row) for row in rows], "bad": False}
 
 
 def numbers_html(label: str, table: "Table", warnings: Iterable[str]) -> str:

@@ -78,9 +78,10 @@ class Form(pn.viewable.Viewer):
         largest_upload: int = 5_000_000,
         **params,
     ):
+        self._own: finalize | None = None
         if folder is None:
             folder = Path(mkdtemp(prefix="softafm-"))
-            finalize(self, shutil.rmtree, folder, ignore_errors=True)
+            self._own = finalize(self, shutil.rmtree, folder, ignore_errors=True)
         self.folder, self.largest_upload = folder, largest_upload
         self._presets = presets()
         self._typed: dict[str, str] = {}
@@ -96,6 +97,11 @@ class Form(pn.viewable.Viewer):
 
     def __panel__(self):
         return self._fields
+
+    def close(self) -> None:
+        """Forget uploaded files, unless they are in a folder that was given."""
+        if self._own is not None:
+            self._own()
 
     def edit(self, path: str, text: str) -> None:
         """Write a text into a field, "" to empty it; KeyError if there is no such field."""

@@ -2,6 +2,7 @@
 
 Requests are pickled pairs (document, folder), answers pickled pairs (kind, content), see
 ``Answer``. It ends when its stdin does, as it does when the process that started it is gone.
+Its argument is the size of the largest result that is sent, bytes.
 """
 
 import os
@@ -27,6 +28,10 @@ message) and ``warning`` (text), and then ``result`` (Dataset) or ``problem`` (t
 _WARM_UP = ("ldpe-tapping", "ldpe-movie")
 """Examples that load between them the compiled code of most runs."""
 _BETWEEN_REPORTS = 0.1  # s
+_OWN_MEMORY = 2_000_000_000  # bytes, without any result
+_COPIES = 4
+"""How often a result is in memory while it is made and sent."""
+_SMALLER = "run it without the surface movie, for fewer cycles, or less accurately"
 
 
 class Outlet:
@@ -49,11 +54,12 @@ class Outlet:
             self.say("progress", (float(fraction), str(message)))
 
 
-def main() -> None:
+def main(largest: int) -> None:
     """Warm up, then answer requests until stdin ends."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is for the server, which then ends us
     if hasattr(os, "nice"):
         os.nice(5)  # the page comes first
+    bound_memory(_OWN_MEMORY + _COPIES * largest)
     answers = os.fdopen(os.dup(sys.stdout.fileno()), "wb")
     os.dup2(sys.stderr.fileno(), sys.stdout.fileno())  # what a library prints is no answer
     requests: queue.SimpleQueue[tuple[Mapping[str, Any], str]] = queue.SimpleQueue()
@@ -63,7 +69,7 @@ def main() -> None:
         experiment_from(document_from(example_text(name), name), Path()).run()
     outlet.say("ready")
     while True:
-        outlet.say(*answer(*requests.get(), outlet))
+        outlet.say(*refuse_large(*answer(*requests.get(), outlet), largest))
 
 
 def _listen(stream: IO[bytes], requests: queue.SimpleQueue) -> None:
@@ -83,6 +89,8 @@ def answer(document: Mapping[str, Any], folder: str, outlet: Outlet) -> tuple[st
                 "result",
                 experiment_from(document, Path(folder)).run(outlet.progress),
             )
+        except MemoryError:
+            last = "problem", f"it needs more memory than a run may have here: {_SMALLER}"
         except (ValueError, DivergedError) as error:
             last = "problem", one_line(str(error))
         except Exception as error:
@@ -94,10 +102,29 @@ def answer(document: Mapping[str, Any], folder: str, outlet: Outlet) -> tuple[st
     return last
 
 
+def refuse_large(kind: str, content: Any, largest: int) -> tuple[str, Any]:
+    """Return an answer, or a problem in the place of a result that is too large."""
+    if kind == "result" and content.nbytes > largest:
+        size = f"{content.nbytes / 1e6:.0f} MB, more than {largest / 1e6:g} MB"
+        return "problem", f"its result has {size}: {_SMALLER}"
+    return kind, content
+
+
+def bound_memory(size: int) -> None:
+    """Let this process have so many bytes of memory, where the operating system can see to it."""
+    try:
+        import resource
+    except ModuleNotFoundError:
+        return
+    hard = resource.getrlimit(resource.RLIMIT_DATA)[1]
+    if hard == resource.RLIM_INFINITY or size < hard:
+        resource.setrlimit(resource.RLIMIT_DATA, (size, hard))
+
+
 def one_line(text: str) -> str:
     """Return lines as sentences of one."""
     return "; ".join(" ".join(line.split()) for line in text.splitlines() if line.strip())
 
 
 if __name__ == "__main__":
-    main()
+    main(int(sys.argv[1]))

@@ -98,7 +98,7 @@ class SampleMap:
         height = arrays.pop("height", np.zeros(shape))
         for name in arrays:
             for material in materials:
-                _refuse_unknown(name, material)
+                refuse_unknown(name, material)
         for name, value in (
             ("materials", materials), ("size", _size(self.size, shape)), ("fields", arrays),
             ("labels", labels.astype(int)), ("height", height),
@@ -289,7 +289,7 @@ def _has(thing, name: str) -> bool:
     return any(entry.name == name for entry in fields(thing))
 
 
-def _refuse_unknown(name: str, material: Contact) -> None:
+def refuse_unknown(name: str, material: Any) -> None:
     """Raise ValueError unless a contact has a number of this name that may vary."""
     part, _, entry = name.partition(".")
     if part not in _PARTS:
