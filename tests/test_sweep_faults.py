@@ -102,6 +102,20 @@ def test_what_a_killed_worker_had_is_run_again_and_what_always_kills_fails(tmp_p
     assert capfd.readouterr() == ("", "")
 
 
+def test_a_script_that_its_workers_cannot_read_is_told_how(tmp_path):
+    script = tmp_path / "script.py"
+    script.write_text(
+        "import softafm as sa\n"
+        "def double(x):\n    return {'y': 2 * x}\n"
+        "sa.sweep(double, {'x': [1, 2]}, workers=1)\n",
+        encoding="utf-8",
+    )
+    said = subprocess.run([sys.executable, script], capture_output=True, text=True)
+    assert said.returncode == 1
+    assert said.stderr.count("Traceback") == 1
+    assert said.stderr.endswith("(a script must sweep under if __name__ == '__main__':)\n")
+
+
 # The client
 
 

@@ -4,6 +4,7 @@ It knows nothing of where runs come from, nor where their results go.
 """
 
 import logging
+import multiprocessing
 import os
 import pickle
 import sys
@@ -193,6 +194,8 @@ def _client(scheduler: str | None, workers: int | None) -> Iterator["Client"]:
         stack.enter_context(dask.config.set(_SETTINGS))
         try:
             if scheduler is None:
+                if getattr(multiprocessing.current_process(), "_inheriting", False):
+                    sys.exit(1)  # a worker that reads the script that starts it: that one tells
                 folder = stack.enter_context(tempfile.TemporaryDirectory(prefix="softafm-"))
                 scheduler = stack.enter_context(
                     LocalCluster(
@@ -210,7 +213,10 @@ def _client(scheduler: str | None, workers: int | None) -> Iterator["Client"]:
         except (OSError, RuntimeError) as error:
             if isinstance(scheduler, str):
                 raise Halted(f"scheduler = {scheduler}: {one_line(str(error))}") from None
-            raise Halted(f"no worker processes could be started: {one_line(str(error))}") from None
+            raise Halted(
+                f"no worker processes could be started: {one_line(str(error))} (a script must "
+                "sweep under if __name__ == '__main__':)"
+            ) from None
         yield client
 
 
