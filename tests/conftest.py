@@ -33,7 +33,10 @@ def reference_cases():
 
 
 def pytest_terminal_summary(terminalreporter):
-    """Say what was left out for want of a browser."""
+    """Say what was measured, and what was left out for want of a browser."""
+    for report in terminalreporter.stats.get("passed", []):
+        for name, value in report.user_properties if report.when == "call" else ():
+            terminalreporter.write_line(f"measured: {name} {value}")
     skipped = terminalreporter.stats.get("skipped", [])
     reasons = [report.longrepr[2] for report in skipped if isinstance(report.longrepr, tuple)]
     reasons = [reason for reason in reasons if NO_BROWSER in reason]

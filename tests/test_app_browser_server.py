@@ -1,4 +1,4 @@
-"""The page for several users in browsers: runs that end otherwise, a queue, limits, a lost server."""
+"""The page for several users: runs that end otherwise, a queue, limits, a server that is gone."""
 
 import os
 import signal
