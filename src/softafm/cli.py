@@ -391,7 +391,7 @@ def page(
         float, typer.Option(help="Memory for results of one user, MB.", metavar="MB")
     ] = 500.0,
 ) -> None:
-    """Open the web page: forms, plots and surface movies; needs softafm[app]."""
+    """Open the web page: forms, plots and surface movies; needs softafm\\[app]."""
     with _bad_input():
         try:
             from softafm.app.limits import Limits
