@@ -27,7 +27,7 @@ _BEYOND = 5
 _QUANTUM = 2e-4
 """Of the view's height."""
 _FARTHEST = 32_000
-_CURVE_POINTS = 2000
+_CURVE_POINTS = 8000
 
 
 class Movie(NamedTuple):
@@ -109,7 +109,8 @@ def _curves(result: "Dataset", start: float, stop: float, scenes: Scenes):
     """Return ``CURVES`` at the frames and at the steps of a run, labels, and where force acts."""
     run = {name: result[variable].values for name, variable in CURVES.items()}
     inside = np.flatnonzero((run["time"] > start) & (run["time"] < stop))
-    inside = inside[thinned([run["force"][inside], run["height"][inside]], _CURVE_POINTS)]
+    seen = [run[name][inside] for name in ("force", "height")]
+    inside = inside[thinned(run["time"][inside], seen, _CURVE_POINTS)]
     above = scenes.tip[0, 0] - np.interp(scenes.time[0], run["time"], run["height"])
     frames = {"time": scenes.time, "height": scenes.tip[:, 0] - above, "force": scenes.force}
     curve = {
