@@ -21,7 +21,7 @@ BAD = "<img src=x> bad"
 
 def until(page, difference):
     """Wait until nothing differs any more."""
-    for _ in range(500):
+    for _ in range(3000):
         if not difference():
             return
         page.wait_for_timeout(20)

@@ -1,6 +1,7 @@
 """The page for several users: runs that end otherwise, a queue, limits, a server that is gone."""
 
 import os
+import re
 import signal
 from pathlib import Path
 
@@ -11,8 +12,7 @@ from softafm.app.form import presets
 from softafm.app.links import to_query
 from softafm.cli import main
 
-CURVE = presets()["ps-approach-curve"]
-LONG = with_value(with_value(CURVE, "run.tolerance", 1e-5), "motion.points", 1000)
+LONG = with_value(presets()["ldpe-tapping"], "motion.cycles", 40_000)  # for some ten minutes
 
 
 @pytest.fixture(scope="module")
@@ -27,6 +27,7 @@ def site(serve):
 def long(site, visit):
     """A page on which a long run has begun."""
     page = visit(f"{site.address}?{to_query(LONG)}")
+    page.locator("input.movie").uncheck()
     page.locator("button.run").click()
     page.locator(".run-running progress").wait_for()
     return page
@@ -34,7 +35,7 @@ def long(site, visit):
 
 def run_tap(page):
     page.locator(".choice-preset").select_option("ldpe-tapping")
-    page.wait_for_url("**mode=tapping-cycle**")
+    page.wait_for_url(re.compile(r"cycles=1(&|$)"))
     page.locator("button.run").click()
 
 
@@ -45,10 +46,10 @@ def test_a_long_run_tells_how_far_it_is_and_is_cancelled_at_once(long):
     second.locator(".state", has_text="waiting, number 1 in the queue").wait_for()
     long.locator("button.run").click()
     long.locator(".words.bad", has_text="1 of your runs are waiting already").wait_for()
-    long.get_by_role("button", name="cancel 1 approach-curve").click()
+    long.get_by_role("button", name="cancel 1 tapping-cycle").click()
     long.locator(".run-cancelled").wait_for()
     second.locator(".state", has_text="done in").wait_for()
-    long.get_by_role("button", name="remove 1 approach-curve").click()
+    long.get_by_role("button", name="remove 1 tapping-cycle").click()
     long.locator(".run-cancelled").wait_for(state="detached")
 
 
