@@ -1332,6 +1332,20 @@ def test_several_problems_are_told_together(load):
     assert second.startswith("motion.frequency")
 
 
+def test_values_out_of_range_are_told_together_with_a_unit_that_does_not_fit(load):
+    sample = {"model": "measured-moduli", "file": "none.csv", "poisson": 0.7, "per_decade": "5 m"}
+    motion = {**TAP["motion"], "amplitude": "-1 nm", "frequency": "1 m"}
+    with pytest.raises(ConfigError) as refused:
+        load({**TAP, "sample": sample, "motion": motion})
+    assert [line.partition(": ")[0] for line in str(refused.value).splitlines()] == [
+        "sample.file = 'none.csv'",
+        "sample.poisson = 0.7",
+        "sample.per_decade = '5 m'",
+        "motion.amplitude = '-1 nm'",
+        "motion.frequency = '1 m'",
+    ]
+
+
 @pytest.mark.parametrize(
     ("content", "reason"),
     [

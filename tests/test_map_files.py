@@ -348,7 +348,7 @@ def test_bad_files_are_refused_before_anything_starts(folder, softafm, override,
         ),
         (
             volume(PS, fields={"surface.z0": {"image": "grey.png", "from": "0 nm", "to": "1 nm"}}),
-            "map: pixel (0, 0): surface.z0 = 0 m: must be greater than 0",
+            "map.fields.\"surface.z0\".from = '0 nm': must be greater than 0",
         ),
     ],
 )

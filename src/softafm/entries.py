@@ -5,10 +5,10 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
-from pydantic import BeforeValidator, Field, ValidationInfo
+from pydantic import AfterValidator, BeforeValidator, Field, ValidationInfo
 
 from softafm import units
-from softafm._validate import finite, tabor_of, tolerance_of, whole
+from softafm._validate import finite, poisson_ratio, positive, tabor_of, tolerance_of, whole
 from softafm.refusals import one_of
 
 _MOST_RATIOS = 1000
@@ -52,20 +52,19 @@ def _number(written: Any) -> float:
         raise ValueError("must be a finite number") from None
 
 
-def _tolerance(written: Any) -> float:
-    number = _number(written)
-    try:
-        return tolerance_of(number)
-    except ValueError as error:
-        raise ValueError(str(error).partition(": ")[2]) from None
+def refused_as(check: Callable[[float], float]) -> AfterValidator:
+    """Return what refuses a number for the reason that a check gives after its name and value.
 
+    What an object would refuse anyway is so told of all values at once, before it is made.
+    """
 
-def _tabor(written: Any) -> float:
-    number = _number(written)
-    try:
-        return tabor_of("regularise", number)
-    except ValueError as error:
-        raise ValueError(str(error).partition(": ")[2]) from None
+    def checked(number: float) -> float:
+        try:
+            return check(number)
+        except ValueError as error:
+            raise ValueError(str(error).partition(": ")[2]) from None
+
+    return AfterValidator(checked)
 
 
 def _cycles(written: Any) -> int | str:
@@ -126,6 +125,15 @@ def _list(written: Any) -> Any:
     return tuple(written)
 
 
+def file_of(read: Callable[[Path], Any]) -> tuple[Any, ...]:
+    """Return the marks of a type that reads the name of a CSV file as what the file holds."""
+
+    def held(written: Any, info: ValidationInfo) -> Any:
+        return read(_file(written, info))
+
+    return _described(held, "the name of a CSV file", Input("file", "approach.csv"))
+
+
 def _file(
     written: Any, info: ValidationInfo, valid: str = "a CSV file, such as 'approach.csv'"
 ) -> Path:
@@ -154,6 +162,7 @@ def _two(written: Any) -> Any:
     return tuple(written)
 
 
+Positive = refused_as(lambda number: positive("", number, ""))
 Length = Annotated[float, *_quantity(units.LENGTH)]
 Time = Annotated[float, *_quantity(units.TIME)]
 Speed = Annotated[float, *_quantity(units.SPEED)]
@@ -172,8 +181,9 @@ Concentration = Annotated[float, *_quantity(units.CONCENTRATION)]
 Compliance = Annotated[float, *_quantity(units.COMPLIANCE)]
 Compliances = Annotated[tuple[Compliance, ...], *_quantities(units.COMPLIANCE)]
 Moduli = Annotated[tuple[Modulus, ...], *_quantities(units.MODULUS)]
-Times = Annotated[tuple[Time, ...], *_quantities(units.TIME)]
+Times = Annotated[tuple[Annotated[Time, Positive], ...], *_quantities(units.TIME)]
 Number = Annotated[float, *_described(_number, "a number, such as 0.49", Input("number"))]
+Poisson = Annotated[Number, refused_as(poisson_ratio)]
 Numbers = Annotated[tuple[Number, ...], BeforeValidator(_list), Input("list", "0.5")]
 QualityFactor = Annotated[
     float, *_described(_number, "a number, such as 430", Input("number", "430"))
@@ -183,9 +193,15 @@ Ratios = Annotated[tuple[Ratio, ...], BeforeValidator(_ratios), Input("list", "0
 Points = Annotated[int, BeforeValidator(_points), Input("number", "31")]
 Cycles = Annotated[int | Literal["steady"], BeforeValidator(_cycles), Input("word", "steady")]
 Flag = Annotated[bool, BeforeValidator(_flag), Input("flag")]
-Tolerance = Annotated[float, BeforeValidator(_tolerance), Input("number", "0.01")]
-Tabor = Annotated[float, BeforeValidator(_tabor), Input("number", "8")]
-File = Annotated[Path, *_described(_file, "the name of a CSV file", Input("file", "approach.csv"))]
+Tolerance = Annotated[
+    float, BeforeValidator(_number), refused_as(tolerance_of), Input("number", "0.01")
+]
+Tabor = Annotated[
+    float,
+    BeforeValidator(_number),
+    refused_as(lambda number: tabor_of("regularise", number)),
+    Input("number", "8"),
+]
 Image = Annotated[Path, *_described(_image, "the name of an image", Input("file", "grains.png"))]
 Pixels = Annotated[tuple[int, int], BeforeValidator(_pixels), Input("list", "128")]
 Extent = Annotated[tuple[Length, Length], BeforeValidator(_two), Input("list", "500 nm", unit="m")]

@@ -21,7 +21,6 @@ from pydantic import (
     field_validator,
 )
 
-from softafm._validate import positive
 from softafm.cantilever import Cantilever
 from softafm.entries import (
     Angle,
@@ -29,7 +28,6 @@ from softafm.entries import (
     Concentration,
     Cycles,
     Entries,
-    File,
     Flag,
     Frequency,
     Joules,
@@ -41,6 +39,8 @@ from softafm.entries import (
     Number,
     Numbers,
     Points,
+    Poisson,
+    Positive,
     Pressure,
     QualityFactor,
     Ratio,
@@ -56,6 +56,8 @@ from softafm.entries import (
     Voltage,
     Whole,
     choice_of,
+    file_of,
+    refused_as,
 )
 from softafm.measured import read_trajectory
 from softafm.motions import Sine, Trajectory, Triangle
@@ -90,6 +92,7 @@ from softafm.surfaces import (
     VanDerWaalsAttraction,
     read_law,
 )
+from softafm.surfaces.limits import length
 from softafm.tips import (
     Cone,
     FlatPunch,
@@ -97,6 +100,7 @@ from softafm.tips import (
     Paraboloid,
     PowerLawTip,
     Sphere,
+    Tip,
     read_tip_profile,
 )
 
@@ -129,13 +133,13 @@ class StandardLinearSolidSample(Table):
         (("E0", "E_inf"), ("G0", "G_inf")),
         (("creep_time",), ("relaxation_time",)),
     )
-    E0: Modulus | None = None
-    E_inf: Modulus | None = None
-    G0: Modulus | None = None
-    G_inf: Modulus | None = None
-    creep_time: Time | None = None
-    relaxation_time: Time | None = None
-    poisson: Number
+    E0: Annotated[Modulus, Positive] | None = None
+    E_inf: Annotated[Modulus, Positive] | None = None
+    G0: Annotated[Modulus, Positive] | None = None
+    G_inf: Annotated[Modulus, Positive] | None = None
+    creep_time: Annotated[Time, Positive] | None = None
+    relaxation_time: Annotated[Time, Positive] | None = None
+    poisson: Poisson
 
     def build(self) -> StandardLinearSolid:
         moduli, time = map(self.given, self.alternatives)
@@ -156,10 +160,10 @@ class TriangleMotion(Table):
     alternatives = ((("start", "turn", "speed"), ("mean_height", "amplitude", "frequency")),)
     start: Length | None = None
     turn: Length | None = None
-    speed: Speed | None = None
+    speed: Annotated[Speed, Positive] | None = None
     mean_height: Length | None = None
-    amplitude: Length | None = None
-    frequency: Frequency | None = None
+    amplitude: Annotated[Length, Positive] | None = None
+    frequency: Annotated[Frequency, Positive] | None = None
     dwell: Time = 0.0
     setpoint_force: Newtons | None = None
 
@@ -173,8 +177,8 @@ class SineMotion(Table):
     """``[motion] shape = "sine"``."""
 
     mean_height: Length
-    amplitude: Length
-    frequency: Frequency
+    amplitude: Annotated[Length, Positive]
+    frequency: Annotated[Frequency, Positive]
     cycles: Cycles = 1
 
     def build(self) -> Sine:
@@ -190,13 +194,10 @@ class TapMotion(SineMotion):
 class TrajectoryMotion(Table):
     """``[motion] shape = "trajectory"``: a CSV file beside the experiment file."""
 
-    file: File
+    file: Annotated[Any, *file_of(read_trajectory)]
 
     def build(self) -> Trajectory:
-        try:
-            return read_trajectory(self.file)
-        except ValueError as error:
-            raise ValueError(f"file = {self.file.name}: {error}") from error
+        return self.file
 
 
 @dataclass(frozen=True)
@@ -220,18 +221,15 @@ class SweepMotion(Table):
     """
 
     alternatives = ((("amplitude_ratio",), ("first_ratio", "last_ratio", "points")),)
-    free_amplitude: Length
+    free_amplitude: Annotated[Length, Positive]
     amplitude_ratio: Ratios | None = None
     first_ratio: Ratio | None = None
     last_ratio: Ratio | None = None
     points: Points | None = None
-    drive_frequency: Frequency | None = None
+    drive_frequency: Annotated[Frequency, Positive] | None = None
 
     def build(self) -> AmplitudeSweep:
         self.given(*self.alternatives)
-        positive("free_amplitude", self.free_amplitude, "m")
-        if self.drive_frequency is not None:
-            positive("drive_frequency", self.drive_frequency, "Hz")
         first, last, points = self.first_ratio, self.last_ratio, self.points
         ratios = self.amplitude_ratio or ()
         if first is not None and last is not None and points is not None:
@@ -247,9 +245,9 @@ class SweepMotion(Table):
 class LeverTable(Table):
     """``[cantilever]`` of a lever that bends slowly."""
 
-    stiffness: Stiffness
-    quality_factor: QualityFactor | None = None
-    frequency: Frequency | None = None
+    stiffness: Annotated[Stiffness, Positive]
+    quality_factor: Annotated[QualityFactor, Positive] | None = None
+    frequency: Annotated[Frequency, Positive] | None = None
 
     def build(self) -> Cantilever:
         return Cantilever(self.stiffness, self.quality_factor, self.frequency)
@@ -258,8 +256,8 @@ class LeverTable(Table):
 class ResonatorTable(LeverTable):
     """``[cantilever]`` of a lever that oscillates."""
 
-    quality_factor: QualityFactor
-    frequency: Frequency
+    quality_factor: Annotated[QualityFactor, Positive]
+    frequency: Annotated[Frequency, Positive]
 
 
 class Run(Table):
@@ -334,11 +332,15 @@ class Thing(Table):
         raise ValueError(f"give {', or '.join(map(all_of, ways))}; found {found or 'none of them'}")
 
 
-def _thing(*constructors: Callable) -> type[Thing]:
-    """Return the table of what a class, or another of its constructors, makes."""
+def _thing(*constructors: Callable, file: Callable[[Path], Any] | None = None) -> type[Thing]:
+    """Return the table of what a class, or another of its constructors, makes.
+
+    ``file`` reads what the constructor takes as such.
+    """
+    written = KEYS if file is None else {**KEYS, "file": Annotated[Any, *file_of(file)]}
     needed = _needed_by_all(constructors)
     names = dict.fromkeys(key for make in constructors for key in _keys_of(make)[1])
-    keys: dict[str, Any] = {key: (KEYS[key], ... if key in needed else None) for key in names}
+    keys: dict[str, Any] = {key: (written[key], ... if key in needed else None) for key in names}
     table = create_model(constructors[0].__name__, __base__=Thing, **keys)
     table.constructors = constructors
     table.alternatives = (_ways(constructors),) if len(constructors) > 1 else ()
@@ -367,30 +369,33 @@ def _keys_of(constructor: Callable) -> tuple[list[str], dict[str, str]]:
 
 KEYS: dict[str, Any] = {
     **dict.fromkeys(
-        ("radius", "apex_radius", "edge_radius", "height", "z0", "decay", "core", "debye_length",
-         "cutoff"),
-        Length,
+        ("radius", "apex_radius", "edge_radius", "z0"), Annotated[Length, Positive]
     ),
-    **dict.fromkeys(("E", "E0", "E1", "E_inf", "G", "G0", "G_inf"), Modulus),
-    **dict.fromkeys(("moduli", "shear_moduli"), Moduli),
-    **dict.fromkeys(("creep_time", "relaxation_time", "reference_time"), Time),
-    **dict.fromkeys(("relaxation_times", "retardation_times", "window"), Times),
-    **dict.fromkeys(("tension", "pressure_at_zero"), Pressure),
-    **dict.fromkeys(("surface_potential", "tip_potential"), Voltage),
     **dict.fromkeys(
-        ("poisson", "exponent", "error", "wall", "smoothing", "permittivity", "mixing_ratio",
-         "per_decade"),
+        ("decay", "core", "debye_length", "cutoff"),
+        Annotated[Length, refused_as(lambda number: length("", number))],
+    ),
+    "height": Length,
+    **dict.fromkeys(("E", "E0", "E1", "G", "G0"), Annotated[Modulus, Positive]),
+    **dict.fromkeys(("E_inf", "G_inf"), Modulus),
+    **dict.fromkeys(("moduli", "shear_moduli"), Moduli),
+    **dict.fromkeys(("creep_time", "relaxation_time", "reference_time"), Annotated[Time, Positive]),
+    **dict.fromkeys(("relaxation_times", "retardation_times", "window"), Times),
+    **dict.fromkeys(("tension", "pressure_at_zero"), Annotated[Pressure, Positive]),
+    **dict.fromkeys(("surface_potential", "tip_potential"), Voltage),
+    "poisson": Poisson,
+    **dict.fromkeys(
+        ("exponent", "error", "wall", "smoothing", "permittivity", "mixing_ratio", "per_decade"),
         Number,
     ),
     "half_angle": Angle,
     "compliances": Compliances,
     "ratios": Numbers,
-    "viscosity": Viscosity,
-    "hamaker": Joules,
-    "work_of_adhesion": JoulesPerArea,
-    "temperature": Temperature,
-    "concentration": Concentration,
-    "file": File,
+    "viscosity": Annotated[Viscosity, Positive],
+    "hamaker": Annotated[Joules, Positive],
+    "work_of_adhesion": Annotated[JoulesPerArea, Positive],
+    "temperature": Annotated[Temperature, Positive],
+    "concentration": Annotated[Concentration, Positive],
 }  # fmt: skip
 """How the parameters of tips, samples and surface laws are written, by their names."""
 
@@ -398,27 +403,19 @@ _KEY_OF = {"W": "work_of_adhesion"}
 """Keys that are not called as the parameter is."""
 
 
-def _read_file(read: Callable[[Path], Any], path: Path) -> Any:
-    """Read a thing from a CSV file; a refusal names the file."""
-    try:
-        return read(path)
-    except ValueError as error:
-        raise ValueError(f"file = {path.name}: {error}") from error
+def measured_tip(file: Tip) -> Tip:
+    """Return the tip that ``read_tip_profile`` read."""
+    return file
 
 
-def measured_tip(file: Path) -> Any:
-    """Read a tip as ``read_tip_profile`` does."""
-    return _read_file(read_tip_profile, file)
+def tabulated(file: SurfaceLaw) -> SurfaceLaw:
+    """Return the surface law that ``read_law`` read."""
+    return file
 
 
-def tabulated(file: Path) -> Any:
-    """Read a surface law as ``read_law`` does."""
-    return _read_file(read_law, file)
-
-
-def measured_moduli(file: Path, poisson: float, per_decade: float = 2.0) -> Any:
-    """Read moduli as ``read_dma`` does, and fit them as ``GeneralizedMaxwell.from_dma``."""
-    frequency, storage, loss = _read_file(read_dma, file)
+def measured_moduli(file: list, poisson: float, per_decade: float = 2.0) -> GeneralizedMaxwell:
+    """Fit moduli that ``read_dma`` read, as ``GeneralizedMaxwell.from_dma``."""
+    frequency, storage, loss = file
     return GeneralizedMaxwell.from_dma(frequency, storage, loss, poisson, per_decade)
 
 
@@ -451,7 +448,7 @@ CHOICES: dict[str, tuple[str, dict[str, type[Table]]]] = {
         {
             **{tip.kind: _thing(tip) for tip in (Paraboloid, Sphere, Cone, Hyperboloid, FlatPunch)},
             PowerLawTip.kind: _thing(PowerLawTip),
-            "measured": _thing(measured_tip),
+            "measured": _thing(measured_tip, file=read_tip_profile),
         },
     ),
     "sample": (
@@ -467,7 +464,7 @@ CHOICES: dict[str, tuple[str, dict[str, type[Table]]]] = {
             ),
             "power-law": _thing(PowerLaw),
             "fractional-standard-linear-solid": _thing(FractionalStandardLinearSolid),
-            "measured-moduli": _thing(measured_moduli),
+            "measured-moduli": _thing(measured_moduli, file=read_dma),
             **{name: _thing(sample) for name, sample in NAMED.items()},
         },
     ),
@@ -480,7 +477,7 @@ CHOICES: dict[str, tuple[str, dict[str, type[Table]]]] = {
             **{law.kind: _thing(law) for law in (Exponential, Morse, Dugdale)},
             "dlvo": _thing(DLVO, DLVO.from_concentration),
             **{law.kind: _thing(law) for law in (Repulsion, VanDerWaalsAttraction)},
-            "tabulated": _thing(tabulated),
+            "tabulated": _thing(tabulated, file=read_law),
             "sum": SumSurface,
         },
     ),
