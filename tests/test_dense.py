@@ -20,7 +20,8 @@ def test_positive_systems_are_solved(n, seed):
     factor = np.triu(matrix) + np.tril(np.full((n, n), np.nan), -1)  # only the upper part is read
     assert dense.factorise(factor, n)
     upper = np.linalg.cholesky(matrix).T
-    found = np.triu(factor, 1) + np.diag(1 / np.diag(factor))
+    rooted = np.sqrt(np.diag(factor))[:, None]
+    found = rooted * np.triu(factor, 1) + np.diag(1 / rooted[:, 0])
     assert np.allclose(found, upper, rtol=0, atol=1e-12 * np.abs(upper).max())
     x = right.copy()
     dense.solve_factorised(factor, x, n)

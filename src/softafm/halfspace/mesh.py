@@ -39,8 +39,8 @@ class UnitMesh(NamedTuple):
     """Radii beyond the last node, shape (far,)."""
     far_masses: np.ndarray
     """∫ f s ds from the last node to infinity = Σ far_masses·f(far), shape (far,)."""
-    drift: np.ndarray
-    """Of j(ξ) at the nodes the derivatives with ln ξ, over 1, 2, 6, 24: shape (4, n)."""
+    slopes: np.ndarray
+    """√(1 + x²) at the nodes, x the argument of each asinh in j(ξ): shape (2, n)."""
 
 
 def node_index(radius, edge_spacing: float, growth: float):
@@ -95,10 +95,10 @@ def unit_mesh(edge_spacing: float, growth: float, extent: float) -> UnitMesh:
     masses = _masses(nodes, spacing)
     stiffness = _inverse(influence(nodes, spacing, masses))
     far, far_masses = beyond(nodes[-1])
-    drift = _drift(nodes, edge_spacing, growth)
-    for array in (nodes, masses, stiffness, far, far_masses, drift):
+    slopes = np.hypot(1, growth / edge_spacing * (nodes - [[1], [-1]]))
+    for array in (nodes, masses, stiffness, far, far_masses, slopes):
         array.setflags(write=False)
-    return UnitMesh(nodes, masses, stiffness, edge_spacing, growth, far, far_masses, drift)
+    return UnitMesh(nodes, masses, stiffness, edge_spacing, growth, far, far_masses, slopes)
 
 
 def _inverse(matrix):
@@ -113,20 +113,6 @@ def _inverse(matrix):
     for row in inverse:
         solve_factorised(matrix, row, len(matrix))
     return (inverse + inverse.T) / 2
-
-
-def _drift(radius, edge_spacing: float, growth: float):
-    """Coefficients of t, t², t³, t⁴ in j(ξ eᵗ) − j(ξ)."""
-    first, second, third, fourth = np.zeros((4, radius.size))
-    for side in (radius - 1, radius + 1):
-        size = np.hypot(edge_spacing, growth * side)
-        bend = (growth * side / size) ** 2
-        first += 1 / size
-        second -= growth**2 * side / size**3
-        third += growth**2 * (3 * bend - 1) / size**3
-        fourth += growth**4 * side * (9 - 15 * bend) / size**5
-    d1, d2, d3, d4 = radius * first, radius**2 * second, radius**3 * third, radius**4 * fourth
-    return np.array([d1, (d1 + d2) / 2, (d1 + 3 * d2 + d3) / 6, (d1 + 7 * d2 + 6 * d3 + d4) / 24])
 
 
 def beyond(end: float) -> tuple[np.ndarray, np.ndarray]:

@@ -4,8 +4,6 @@ Written out by hand, as calls to LAPACK and BLAS cost more than the work at the 
 a contact.
 """
 
-from math import sqrt
-
 from numba import boolean, float64, int64, njit, types
 
 _FAST = {"reassoc", "contract", "nsz", "arcp"}
@@ -16,75 +14,114 @@ _CONST2 = types.Array(float64, 2, "C", readonly=True)
 
 @njit(boolean(_M, int64), cache=True, fastmath=_FAST)
 def factorise(matrix, n):
-    """Cholesky UᵀU of the upper triangle in place, diagonal inverted; False if not positive."""
-    k = 0
-    while k < n:
-        block = min(4, n - k)
-        for p in range(k, k + block):
-            for q in range(k, p):
-                f = matrix[q, p]
-                for j in range(p, n):
-                    matrix[p, j] -= f * matrix[q, j]
-            if not matrix[p, p] > 0.0:
-                return False
-            root = 1.0 / sqrt(matrix[p, p])
-            matrix[p, p] = root
-            for j in range(p + 1, n):
-                matrix[p, j] *= root
-        if block < 4:
-            return True
-        i = k + 4
-        while i + 2 <= n:
-            a0, a1, a2, a3 = matrix[k, i], matrix[k + 1, i], matrix[k + 2, i], matrix[k + 3, i]
-            b0, b1 = matrix[k, i + 1], matrix[k + 1, i + 1]
-            b2, b3 = matrix[k + 2, i + 1], matrix[k + 3, i + 1]
-            matrix[i, i] -= a0 * a0 + a1 * a1 + a2 * a2 + a3 * a3
-            for j in range(i + 1, n):
-                x0, x1, x2, x3 = matrix[k, j], matrix[k + 1, j], matrix[k + 2, j], matrix[k + 3, j]
-                matrix[i, j] -= a0 * x0 + a1 * x1 + a2 * x2 + a3 * x3
-                matrix[i + 1, j] -= b0 * x0 + b1 * x1 + b2 * x2 + b3 * x3
-            i += 2
-        if i < n:
-            a0, a1, a2, a3 = matrix[k, i], matrix[k + 1, i], matrix[k + 2, i], matrix[k + 3, i]
-            matrix[i, i] -= a0 * a0 + a1 * a1 + a2 * a2 + a3 * a3
-        k += 4
+    """RᵀD⁻¹R of the upper triangle in place, of Cholesky's kind without his roots.
+
+    D is the diagonal of R, left inverted. False if the matrix is not positive.
+    """
+    for k in range(0, n - 3, 4):
+        a1, a2, a3 = matrix[k, k + 1], matrix[k, k + 2], matrix[k, k + 3]
+        b1, b2, b3 = matrix[k + 1, k + 1], matrix[k + 1, k + 2], matrix[k + 1, k + 3]
+        c2, c3, e3 = matrix[k + 2, k + 2], matrix[k + 2, k + 3], matrix[k + 3, k + 3]
+        if not matrix[k, k] > 0.0:
+            return False
+        da = 1.0 / matrix[k, k]
+        f1, f2, f3 = a1 * da, a2 * da, a3 * da
+        b1 -= f1 * a1
+        if not b1 > 0.0:
+            return False
+        db, b2, b3 = 1.0 / b1, b2 - f1 * a2, b3 - f1 * a3
+        g2, g3 = b2 * db, b3 * db
+        c2 -= f2 * a2 + g2 * b2
+        if not c2 > 0.0:
+            return False
+        dc, c3 = 1.0 / c2, c3 - f2 * a3 - g2 * b3
+        h3 = c3 * dc
+        e3 -= f3 * a3 + g3 * b3 + h3 * c3
+        if not e3 > 0.0:
+            return False
+        de = 1.0 / e3
+        matrix[k, k], matrix[k + 1, k + 1] = da, db
+        matrix[k + 2, k + 2], matrix[k + 3, k + 3] = dc, de
+        matrix[k + 1, k + 2], matrix[k + 1, k + 3], matrix[k + 2, k + 3] = b2, b3, c3
+        a, b = matrix[k, k + 4 : n], matrix[k + 1, k + 4 : n]
+        c, e = matrix[k + 2, k + 4 : n], matrix[k + 3, k + 4 : n]
+        for j in range(a.size):
+            y = b[j] - f1 * a[j]
+            z = c[j] - f2 * a[j] - g2 * y
+            b[j], c[j] = y, z
+            e[j] -= f3 * a[j] + g3 * y + h3 * z
+        whole = n - n % 4
+        for i in range(k + 4, whole, 4):
+            a, b = matrix[k, i:n], matrix[k + 1, i:n]
+            c, e = matrix[k + 2, i:n], matrix[k + 3, i:n]
+            a0, b0, c0, e0 = a[0] * da, b[0] * db, c[0] * dc, e[0] * de
+            a1, b1, c1, e1 = a[1] * da, b[1] * db, c[1] * dc, e[1] * de
+            a2, b2, c2, e2 = a[2] * da, b[2] * db, c[2] * dc, e[2] * de
+            a3, b3, c3, e3 = a[3] * da, b[3] * db, c[3] * dc, e[3] * de
+            row0, row1 = matrix[i, i:n], matrix[i + 1, i:n]
+            row2, row3 = matrix[i + 2, i:n], matrix[i + 3, i:n]
+            for j in range(row0.size):
+                w, x, y, z = a[j], b[j], c[j], e[j]
+                row0[j] -= a0 * w + b0 * x + c0 * y + e0 * z
+                row1[j] -= a1 * w + b1 * x + c1 * y + e1 * z
+                row2[j] -= a2 * w + b2 * x + c2 * y + e2 * z
+                row3[j] -= a3 * w + b3 * x + c3 * y + e3 * z
+        for i in range(whole, n):
+            for j in range(i, n):
+                matrix[i, j] -= (
+                    matrix[k, i] * da * matrix[k, j]
+                    + matrix[k + 1, i] * db * matrix[k + 1, j]
+                    + matrix[k + 2, i] * dc * matrix[k + 2, j]
+                    + matrix[k + 3, i] * de * matrix[k + 3, j]
+                )
+    for k in range(n - n % 4, n):
+        if not matrix[k, k] > 0.0:
+            return False
+        matrix[k, k] = 1.0 / matrix[k, k]
+        for i in range(k + 1, n):
+            part = matrix[k, i] * matrix[k, k]
+            for j in range(i, n):
+                matrix[i, j] -= part * matrix[k, j]
     return True
 
 
 @njit((_M, _V, int64), cache=True, fastmath=_FAST)
 def solve_factorised(factor, x, n):
-    """Overwrite ``x`` with (UᵀU)⁻¹ x, four rows at a time."""
+    """Overwrite ``x`` with (RᵀD⁻¹R)⁻¹ x, four rows at a time."""
     whole = n - n % 4
     for i in range(0, whole, 4):
-        x0 = x[i] * factor[i, i]
-        x1 = (x[i + 1] - x0 * factor[i, i + 1]) * factor[i + 1, i + 1]
-        x2 = x[i + 2] - x0 * factor[i, i + 2] - x1 * factor[i + 1, i + 2]
-        x2 *= factor[i + 2, i + 2]
-        x3 = x[i + 3] - x0 * factor[i, i + 3] - x1 * factor[i + 1, i + 3]
-        x3 = (x3 - x2 * factor[i + 2, i + 3]) * factor[i + 3, i + 3]
-        x[i], x[i + 1], x[i + 2], x[i + 3] = x0, x1, x2, x3
-        for j in range(i + 4, n):
-            x[j] -= (
-                x0 * factor[i, j]
-                + x1 * factor[i + 1, j]
-                + x2 * factor[i + 2, j]
-                + x3 * factor[i + 3, j]
-            )
+        z0 = x[i] * factor[i, i]
+        x1 = x[i + 1] - z0 * factor[i, i + 1]
+        z1 = x1 * factor[i + 1, i + 1]
+        x2 = x[i + 2] - z0 * factor[i, i + 2] - z1 * factor[i + 1, i + 2]
+        z2 = x2 * factor[i + 2, i + 2]
+        x3 = x[i + 3] - z0 * factor[i, i + 3] - z1 * factor[i + 1, i + 3]
+        x3 -= z2 * factor[i + 2, i + 3]
+        z3 = x3 * factor[i + 3, i + 3]
+        x[i + 1], x[i + 2], x[i + 3] = x1, x2, x3
+        a, b = factor[i, i + 4 : n], factor[i + 1, i + 4 : n]
+        c, e = factor[i + 2, i + 4 : n], factor[i + 3, i + 4 : n]
+        rest = x[i + 4 : n]
+        for j in range(rest.size):
+            rest[j] -= z0 * a[j] + z1 * b[j] + z2 * c[j] + z3 * e[j]
     for i in range(whole, n):
-        x[i] *= factor[i, i]
+        z0 = x[i] * factor[i, i]
         for j in range(i + 1, n):
-            x[j] -= x[i] * factor[i, j]
+            x[j] -= z0 * factor[i, j]
     for i in range(n - 1, whole - 1, -1):
         for j in range(i + 1, n):
             x[i] -= factor[i, j] * x[j]
         x[i] *= factor[i, i]
     for i in range(whole - 4, -1, -4):
         x0, x1, x2, x3 = x[i], x[i + 1], x[i + 2], x[i + 3]
-        for j in range(i + 4, n):
-            x0 -= factor[i, j] * x[j]
-            x1 -= factor[i + 1, j] * x[j]
-            x2 -= factor[i + 2, j] * x[j]
-            x3 -= factor[i + 3, j] * x[j]
+        a, b = factor[i, i + 4 : n], factor[i + 1, i + 4 : n]
+        c, e = factor[i + 2, i + 4 : n], factor[i + 3, i + 4 : n]
+        rest = x[i + 4 : n]
+        for j in range(rest.size):
+            x0 -= a[j] * rest[j]
+            x1 -= b[j] * rest[j]
+            x2 -= c[j] * rest[j]
+            x3 -= e[j] * rest[j]
         x3 *= factor[i + 3, i + 3]
         x2 = (x2 - factor[i + 2, i + 3] * x3) * factor[i + 2, i + 2]
         x1 -= factor[i + 1, i + 2] * x2 + factor[i + 1, i + 3] * x3

@@ -1,4 +1,4 @@
-"""Compiled loops of the energy solver: equilibrate, settle, advance.
+"""Compiled loops of the energy solver: equilibrate, settle, and advance.
 
 Lengths in m, pressures in Pa, times in s. The surface is known on nodes r_i = a ξ_i of a unit mesh
 (softafm.halfspace.mesh) in a frame of radius a that follows the contact edge. With the stiffness
@@ -17,7 +17,7 @@ All of it stands in one file because numba's disk cache only notices changes of 
 function is in.
 """
 
-from math import asinh, exp, floor, inf, log, pi
+from math import asinh, exp, floor, inf, pi, sqrt
 from typing import NamedTuple
 
 import numpy as np
@@ -26,7 +26,12 @@ from numba import float64, int64, njit, types
 from softafm.compiled import HEIGHT, POTENTIAL, PRESSURE, PROFILE, pointer
 from softafm.solvers.dense import factorise, multiply, row_products, solve_factorised
 
-_FAST = {"reassoc", "contract", "nsz", "arcp"}
+_COMPILED: dict = {
+    "cache": True,
+    "fastmath": {"reassoc", "contract", "nsz", "arcp"},
+    # Loops that might raise ZeroDivisionError are not vectorised.
+    "error_model": "numpy",
+}
 _V = float64[::1]
 _M = float64[:, ::1]
 _CONST = types.Array(float64, 1, "C", readonly=True)
@@ -79,7 +84,7 @@ class Mesh(NamedTuple):
     growth: float
     far: np.ndarray
     far_masses: np.ndarray
-    drift: np.ndarray
+    slopes: np.ndarray
 
 
 class Parameters(NamedTuple):
@@ -145,74 +150,98 @@ BACKGROUND = types.NamedTuple((_M, float64, float64, float64, float64, float64),
 CONTROLS = types.NamedUniTuple(float64, len(Controls._fields), Controls)
 
 
-@njit((_M, float64, int64, _M), cache=True, fastmath=_FAST, inline="always")
-def _interpolate(fields, x, i, out):
-    """Fields (m, n) at the fractional node index ``x``, into column i: six-point Lagrange, even."""
-    base = min(floor(x) - 2, fields.shape[1] - 6)
-    t0 = x - base
-    t1, t2, t3, t4, t5 = t0 - 1.0, t0 - 2.0, t0 - 3.0, t0 - 4.0, t0 - 5.0
-    w0, w1 = t1 * t2 * t3 * t4 * t5 / -120.0, t0 * t2 * t3 * t4 * t5 / 24.0
-    w2, w3 = t0 * t1 * t3 * t4 * t5 / -12.0, t0 * t1 * t2 * t4 * t5 / 12.0
-    w4, w5 = t0 * t1 * t2 * t3 * t5 / -24.0, t0 * t1 * t2 * t3 * t4 / 120.0
-    i0, i1, i2 = abs(base), abs(base + 1), abs(base + 2)
-    i3, i4, i5 = base + 3, base + 4, base + 5
-    for m in range(fields.shape[0]):
-        out[m, i] = (
-            w0 * fields[m, i0]
-            + w1 * fields[m, i1]
-            + w2 * fields[m, i2]
-            + w3 * fields[m, i3]
-            + w4 * fields[m, i4]
-            + w5 * fields[m, i5]
-        )
+@njit((_M, _V, _M, _M), **_COMPILED)
+def _interpolate(fields, index, weights, out):
+    """Fields (m, n), even in the node index, at fractional indices: six-point Lagrange.
+
+    ``weights`` (6, ...) is worked in.
+    """
+    rows, n = fields.shape
+    for i in range(index.size):
+        t0 = index[i] - min(floor(index[i]) - 2.0, n - 6.0)
+        t1, t2, t3, t4, t5 = t0 - 1.0, t0 - 2.0, t0 - 3.0, t0 - 4.0, t0 - 5.0
+        a, b, c = t0 * t1, t2 * t3, t4 * t5
+        weights[0, i], weights[1, i] = b * c * t1 / -120.0, b * c * t0 / 24.0
+        weights[2, i], weights[3, i] = a * c * t3 / -12.0, a * c * t2 / 12.0
+        weights[4, i], weights[5, i] = a * b * t5 / -24.0, a * b * t4 / 120.0
+    # Unsigned where it cannot be negative, or each access would ask whether it is.
+    for m in range(rows):
+        field, found = fields[m], out[m]
+        for i in range(index.size):
+            base = min(int(index[i]) - 2, n - 6)
+            found[i] = (
+                weights[0, i] * field[abs(base)]
+                + weights[1, i] * field[abs(base + 1)]
+                + weights[2, i] * field[np.uint64(base + 2)]
+                + weights[3, i] * field[np.uint64(base + 3)]
+                + weights[4, i] * field[np.uint64(base + 4)]
+                + weights[5, i] * field[np.uint64(base + 5)]
+            )
 
 
-@njit((_M, float64, float64, float64, float64, _CONST, _M), cache=True, fastmath=_FAST)
-def transfer(fields, end, edge_spacing, growth, stretch, nodes, out):
+@njit((_M, float64, float64, _CONST, _M), **_COMPILED)
+def _fade(fields, end, stretch, nodes, out):
+    """Continue fields beyond the ``end`` of their mesh as 1/r."""
+    last = fields.shape[1] - 1
+    for i in range(nodes.size - 1, -1, -1):
+        r = nodes[i] * stretch
+        if r <= end:
+            break
+        for m in range(fields.shape[0]):
+            out[m, i] = fields[m, last] * end / r
+
+
+@njit((_M, float64, float64, float64, float64, _CONST, _M, _M), **_COMPILED)
+def transfer(fields, end, edge_spacing, growth, stretch, nodes, work, out):
     """Evaluate displacement fields of one mesh at radii ``stretch``·``nodes`` of another.
 
     ``fields`` (m, n) live on a mesh of this ``edge_spacing`` and ``growth`` whose last node is
     ``end``. They are smooth and even in the node index; beyond the last node they are those of a
-    concentrated load, 1/r.
+    concentrated load, 1/r. ``work`` (7, ...) is worked in.
     """
     scale = growth / edge_spacing
-    rows, n = fields.shape
     for i in range(nodes.size):
         r = nodes[i] * stretch
-        if r > end:
-            for m in range(rows):
-                out[m, i] = fields[m, n - 1] * end / r
-            continue
-        x = (asinh(scale * (r - 1.0)) + asinh(scale * (r + 1.0))) / growth
-        _interpolate(fields, x, i, out)
+        work[0, i] = (asinh(scale * (r - 1.0)) + asinh(scale * (r + 1.0))) / growth
+    _interpolate(fields, work[0, : nodes.size], work[1:], out)
+    _fade(fields, end, stretch, nodes, out)
 
 
-@njit((_M, MESH, float64, _M), cache=True, fastmath=_FAST)
-def reframe(fields, mesh, stretch, out):
+@njit((_M, MESH, float64, _M, _M), **_COMPILED)
+def reframe(fields, mesh, stretch, work, out):
     """Fields (m, n) in a frame ``stretch`` times larger, on the same mesh.
 
-    If that shifts the nodes little, their index comes from the series of its map, to 1e-8.
+    If the nodes move little, tanh(½ asinh y − ½ asinh x) = (y − x)/(√(1 + y²) + √(1 + x²)) and the
+    series of artanh, to 1e-10, tell by how much their index changes; else ``transfer``.
     """
-    if abs(stretch - 1.0) < 1e-12:
-        out[:] = fields
+    n = mesh.nodes.size
+    end = mesh.nodes[n - 1]
+    moved = stretch - 1.0
+    if abs(moved) < 1e-12:
+        for m in range(fields.shape[0]):
+            for i in range(n):
+                out[m, i] = fields[m, i]
         return
-    rows, n = fields.shape
-    t = log(stretch)
-    if abs(t) > 0.15 * mesh.edge_spacing:
-        end = mesh.nodes[n - 1]
-        transfer(fields, end, mesh.edge_spacing, mesh.growth, stretch, mesh.nodes, out)
+    scale = mesh.growth / mesh.edge_spacing
+    if abs(scale * moved) > 0.6:
+        transfer(fields, end, mesh.edge_spacing, mesh.growth, stretch, mesh.nodes, work, out)
         return
-    drift, last = mesh.drift, n - 1.0
+    index, halves = work[0, :n], 2.0 / mesh.growth
     for i in range(n):
-        x = i + t * (drift[0, i] + t * (drift[1, i] + t * (drift[2, i] + t * drift[3, i])))
-        if x > last:
-            for m in range(rows):
-                out[m, i] = fields[m, n - 1] * mesh.nodes[n - 1] / (mesh.nodes[i] * stretch)
-        else:
-            _interpolate(fields, x, i, out)
+        before, by = scale * mesh.nodes[i], scale * mesh.nodes[i] * moved
+        inner, outer = before + by - scale, before + by + scale
+        inner, outer = sqrt(1.0 + inner * inner), sqrt(1.0 + outer * outer)
+        inner, outer = inner + mesh.slopes[0, i], outer + mesh.slopes[1, i]
+        tanh = by * (inner + outer) / (inner * outer + by * by)
+        z = tanh * tanh
+        series = 1.0 / 9 + z * (1.0 / 11 + z * (1.0 / 13 + z / 15))
+        series = 1.0 + z * (1.0 / 3 + z * (1.0 / 5 + z * (1.0 / 7 + z * series)))
+        index[i] = i + halves * tanh * series
+    _interpolate(fields, index, work[1:], out)
+    _fade(fields, end, stretch, mesh.nodes, out)
 
 
-@njit(float64(_V, _CONST, float64), cache=True)
+@njit(float64(_V, _CONST, float64), **_COMPILED)
 def radius_of_gap(gap, nodes, value):
     """Smallest radius (in units of the frame) where the gap reaches ``value``."""
     if gap[0] >= value:
@@ -224,7 +253,7 @@ def radius_of_gap(gap, nodes, value):
     return nodes[nodes.size - 1]
 
 
-@njit((MESH, float64, _V, float64, float64, _M), cache=True, fastmath=_FAST)
+@njit((MESH, float64, _V, float64, float64, _M), **_COMPILED)
 def _assemble(mesh, scale, slope, shift, lever, hessian):
     """Upper triangle of S·scale − diag(m (p' − shift)), bordered by a lever's row if it has one.
 
@@ -243,7 +272,7 @@ def _assemble(mesh, scale, slope, shift, lever, hessian):
     hessian[n, n] = total + shift
 
 
-@njit((float64, _V, MESH, pointer(PRESSURE), _V, _M), cache=True, fastmath=_FAST)
+@njit((float64, _V, MESH, pointer(PRESSURE), _V, _M), **_COMPILED)
 def beyond_mesh(gap, rise, mesh, law, parameters, work):
     """Force that acts beyond the last node and minus its derivative with the gap, both over 2πa².
 
@@ -266,8 +295,7 @@ def beyond_mesh(gap, rise, mesh, law, parameters, work):
         _V, _V, float64, _V, float64, float64, _V,
         MESH, pointer(PRESSURE), _V, float64, float64, _V, _M, _M, _M,
     ),
-    cache=True,
-    fastmath=_FAST,
+    **_COMPILED,
 )  # fmt: skip
 def equilibrate(
     u, v, ac, standoff, lever, rest, rise,
@@ -345,8 +373,7 @@ def equilibrate(
         _V, _V, float64, _V, float64, _V,
         MESH, pointer(PRESSURE), pointer(POTENTIAL), _V, float64,
     ),
-    cache=True,
-    fastmath=_FAST,
+    **_COMPILED,
 )  # fmt: skip
 def settle(u, v, ac, standoff, lever, rise, mesh, law, potential, parameters, accuracy):
     """Descend from ``u``, in place, to a stable shape of u = v − c K p(standoff + q − u).
@@ -422,7 +449,7 @@ def settle(u, v, ac, standoff, lever, rise, mesh, law, potential, parameters, ac
     return -1
 
 
-@njit(float64(_V, _V, _V, MESH, float64, pointer(PRESSURE), _V, _M), cache=True, fastmath=_FAST)
+@njit(float64(_V, _V, _V, MESH, float64, pointer(PRESSURE), _V, _M), **_COMPILED)
 def tip_force(pressure, gap, rise, mesh, frame, law, parameters, far_work):
     """Force on the tip, N: the mesh's share and that of the flat surface beyond it."""
     n = gap.size
@@ -432,7 +459,7 @@ def tip_force(pressure, gap, rise, mesh, frame, law, parameters, far_work):
     return 2.0 * pi * frame * frame * total
 
 
-@njit((pointer(PROFILE), _V, MESH, float64, _V, _V, _V), cache=True, fastmath=_FAST)
+@njit((pointer(PROFILE), _V, MESH, float64, _V, _V, _V), **_COMPILED)
 def raise_tip(profile, parameters, mesh, frame, scratch, tip, rise):
     """Heights of the tip above its apex at the nodes, and above the last node beyond the mesh."""
     n, far = mesh.nodes.size, mesh.far.size
@@ -446,7 +473,7 @@ def raise_tip(profile, parameters, mesh, frame, scratch, tip, rise):
         rise[i] -= tip[n - 1]
 
 
-@njit((float64, float64, int64, _V, _V, _M), cache=True)
+@njit((float64, float64, int64, _V, _V, _M), **_COMPILED)
 def memory_weights(step, last, order, compliance, retardation, weights):
     """Weights of y⁺ = decay·y + earlier·q₋ + now·q + new·q⁺ over a step, one row per mode.
 
@@ -485,7 +512,7 @@ def memory_weights(step, last, order, compliance, retardation, weights):
             row[_NEW] += bend / (1.0 + ratio)
 
 
-@njit((int64, float64, float64, float64, _V), cache=True)
+@njit((int64, float64, float64, float64, _V), **_COMPILED)
 def extrapolation_weights(history, step, last, before, weights):
     """Weights of the last shapes that extrapolate them by ``step``: order ``history`` − 1."""
     weights[0], weights[1], weights[2] = 1.0, 0.0, 0.0
@@ -498,14 +525,14 @@ def extrapolation_weights(history, step, last, before, weights):
         weights[2] = step * near / (before * (last + before))
 
 
-@njit(float64(float64, float64), cache=True)
+@njit(float64(float64, float64), **_COMPILED)
 def frame_for(edge, open_frame):
     """Frame radius that suits a contact edge; a contact too small to fill the field of attraction
     is seen from a wider frame, ``open_frame`` when there is none."""
     return max(edge, open_frame - 1.5 * edge)
 
 
-@njit(float64(float64, _V, MESH, CONTROLS), cache=True)
+@njit(float64(float64, _V, MESH, CONTROLS), **_COMPILED)
 def following_frame(step, clock, mesh, controls):
     """Frame radius for the next step, which rides along with the edge.
 
@@ -526,8 +553,8 @@ def following_frame(step, clock, mesh, controls):
     return max(ridden + pace * (suited - frame), 0.5 * frame)
 
 
-@njit((float64, float64, int64, _M, _V, MESH, _V, _V, _M), cache=True)
-def predict(frame, step, history, fields, clock, mesh, weights, guess, shape):
+@njit((float64, float64, int64, _M, _V, MESH, _V, _V, _M, _M), **_COMPILED)
+def predict(frame, step, history, fields, clock, mesh, weights, guess, work, shape):
     """Extrapolate the last ``history`` shapes to the new frame, as seen riding on the edge."""
     n = mesh.nodes.size
     speed = 0.0
@@ -538,13 +565,13 @@ def predict(frame, step, history, fields, clock, mesh, weights, guess, shape):
     for k in range(history):
         riding = max(frame - speed * ago, 0.5 * frame)
         row = DEFORMATION + k
-        reframe(fields[row : row + 1], mesh, riding / clock[FRAME + k], shape)
+        reframe(fields[row : row + 1], mesh, riding / clock[FRAME + k], work, shape)
         for i in range(n):
             guess[i] += weights[k] * shape[0, i]
         ago += clock[LAST + k]
 
 
-@njit((_V, float64, float64, float64, float64, float64), cache=True)
+@njit((_V, float64, float64, float64, float64, float64), **_COMPILED)
 def _move_clock(clock, step, frame, edge, force, deflection):
     clock[DEFLECTION_EARLIEST], clock[DEFLECTION_EARLIER], clock[DEFLECTION] = (
         clock[DEFLECTION_EARLIER],
@@ -566,15 +593,15 @@ def _move_clock(clock, step, frame, edge, force, deflection):
     clock[BEFORE], clock[LAST] = clock[LAST], step
 
 
-@njit((BACKGROUND, float64, float64, _V, _CONST, _M), cache=True)
-def recall(background, time, frame, retardation, nodes, memory):
+@njit((BACKGROUND, float64, float64, _V, _CONST, _M, _M), **_COMPILED)
+def recall(background, time, frame, retardation, nodes, work, memory):
     """Memory of the background at ``time`` on the nodes of a frame, into rows of ``memory``."""
     modes = background.values.shape[0]
     if modes == 0:
         return
     transfer(
         background.values, background.end, background.edge_spacing, background.growth,
-        frame / background.frame, nodes, memory,
+        frame / background.frame, nodes, work, memory,
     )  # fmt: skip
     for m in range(modes):
         fading = exp(-(time - background.since) / retardation[m])
@@ -587,8 +614,7 @@ def recall(background, time, frame, retardation, nodes, memory):
         pointer(HEIGHT), pointer(PROFILE), pointer(PRESSURE), PARAMETERS,
         BACKGROUND, MESH, CONTROLS, _M, _V, _M, _M,
     ),
-    cache=True,
-    fastmath=_FAST,
+    **_COMPILED,
 )  # fmt: skip
 def advance(
     height, profile, law, parameters, background, mesh, controls, fields, clock, records, shapes,
@@ -612,6 +638,7 @@ def advance(
     v, guess, standoff, scratch = work[0], work[1], work[2], work[3]
     shape, load_earlier, load_new, tip = work[4:5], work[5], work[6], work[7]
     u = np.empty(n + 1)
+    shifting = np.empty((7, n))
     past, old = np.empty((modes + 1, n)), np.zeros((modes, n))
     load, memory = past[0], past[1:]
     lags, strained = np.empty((modes, n)), np.empty((modes, n))
@@ -639,16 +666,16 @@ def advance(
 
         frame = following_frame(step, clock, mesh, controls)
         stretch = frame / clock[FRAME]
-        reframe(fields[LOAD : MEMORY + modes], mesh, stretch, past)
+        reframe(fields[LOAD : MEMORY + modes], mesh, stretch, shifting, past)
         order = min(history, 2)
         if order == 2:
             earlier = frame / clock[FRAME_EARLIER]
-            reframe(fields[LOAD_EARLIER:LOAD], mesh, earlier, work[5:6])
+            reframe(fields[LOAD_EARLIER:LOAD], mesh, earlier, shifting, work[5:6])
         else:
             load_earlier[:] = 0.0
         memory_weights(step, clock[LAST], order, compliance, retardation, remember)
 
-        recall(background, clock[TIME] + step, frame, retardation, mesh.nodes, old)
+        recall(background, clock[TIME] + step, frame, retardation, mesh.nodes, shifting, old)
 
         # The step is an elastic contact of compliance c on a surface displaced by v.
         c = compliance[0]
@@ -668,7 +695,7 @@ def advance(
             standoff[i] = h0 - parameters.law[ORIGIN] + tip[i]
 
         extrapolation_weights(history, step, clock[LAST], clock[BEFORE], weights)
-        predict(frame, step, history, fields, clock, mesh, weights, guess, shape)
+        predict(frame, step, history, fields, clock, mesh, weights, guess, shifting, shape)
         deflection = 0.0
         for k in range(history):
             deflection += weights[k] * clock[DEFLECTION + k]

@@ -135,14 +135,18 @@ class Surface:
         memory = np.zeros((self.parameters.retardation.size, self.mesh.nodes.size))
         k.recall(
             self.background, self.time, self.clock[k.FRAME], self.parameters.retardation,
-            self.mesh.nodes, memory,
+            self.mesh.nodes, np.empty((7, self.mesh.nodes.size)), memory,
         )  # fmt: skip
         return memory + self.fields[k.MEMORY :]
 
     def _carried(self, fields, mesh: k.Mesh, stretch: float) -> np.ndarray:
         """Return fields (m, n) on another mesh, in a frame ``stretch`` times larger."""
-        old, result = self.mesh, np.empty((len(fields), mesh.nodes.size))
-        k.transfer(fields, old.nodes[-1], old.edge_spacing, old.growth, stretch, mesh.nodes, result)
+        old, n = self.mesh, mesh.nodes.size
+        result = np.empty((len(fields), n))
+        k.transfer(
+            fields, old.nodes[-1], old.edge_spacing, old.growth, stretch, mesh.nodes,
+            np.empty((7, n)), result,
+        )  # fmt: skip
         return result
 
     def settle(self) -> np.ndarray:
