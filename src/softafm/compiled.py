@@ -16,7 +16,11 @@ from numba.extending import typeof_impl
 from softafm.formulas import Shape
 
 _ARRAY = float64[::1]
-_FAST = {"reassoc", "contract", "nsz", "arcp"}
+_OPTIONS: dict[str, Any] = {
+    "fastmath": {"reassoc", "contract", "nsz", "arcp"},
+    # Loops that might raise ZeroDivisionError are not vectorised.
+    "error_model": "numpy",
+}
 
 PRESSURE = void(_ARRAY, _ARRAY, _ARRAY, _ARRAY, int64)
 """``(gap, parameters, pressure, slope, n)``: p and dp/dh of the first n gaps, in Pa and Pa/m.
@@ -46,7 +50,7 @@ class CompiledFunction(types.WrapperAddressProtocol):
 
     @cached_property
     def _compiled(self):
-        return njit(self._signature, cache=self._on_disk, fastmath=_FAST)(self._python)
+        return njit(self._signature, cache=self._on_disk, **_OPTIONS)(self._python)
 
     @cached_property
     def _address(self) -> int:
@@ -147,7 +151,7 @@ def _loop(shapes: tuple[Shape, ...], arguments: str, x: str, first: int, results
 
 
 def _formula(function: Callable) -> Callable:
-    return njit(function, fastmath=_FAST)
+    return njit(function, **_OPTIONS)
 
 
 def _is_compiled(function: Callable) -> bool:

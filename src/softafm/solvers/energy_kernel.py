@@ -17,7 +17,7 @@ All of it stands in one file because numba's disk cache only notices changes of 
 function is in.
 """
 
-from math import asinh, exp, floor, inf, pi, sqrt
+from math import asinh, exp, floor, inf, log, pi, sqrt
 from typing import NamedTuple
 
 import numpy as np
@@ -209,36 +209,36 @@ def transfer(fields, end, edge_spacing, growth, stretch, nodes, work, out):
 
 @njit((_M, MESH, float64, _M, _M), **_COMPILED)
 def reframe(fields, mesh, stretch, work, out):
-    """Fields (m, n) in a frame ``stretch`` times larger, on the same mesh.
+    """As ``transfer``, to a frame ``stretch`` times larger on the same mesh.
 
-    If the nodes move little, tanh(½ asinh y − ½ asinh x) = (y − x)/(√(1 + y²) + √(1 + x²)) and the
-    series of artanh, to 1e-10, tell by how much their index changes; else ``transfer``.
+    Half the change of an asinh is artanh((y − x)/(√(1 + x²) + √(1 + y²))); so is the sum of those
+    of both in the index of a node, by a series if it is small, to 1e-10.
     """
     n = mesh.nodes.size
-    end = mesh.nodes[n - 1]
     moved = stretch - 1.0
     if abs(moved) < 1e-12:
         for m in range(fields.shape[0]):
             for i in range(n):
                 out[m, i] = fields[m, i]
         return
-    scale = mesh.growth / mesh.edge_spacing
-    if abs(scale * moved) > 0.6:
-        transfer(fields, end, mesh.edge_spacing, mesh.growth, stretch, mesh.nodes, work, out)
-        return
-    index, halves = work[0, :n], 2.0 / mesh.growth
+    index, scale, halves = work[0, :n], mesh.growth / mesh.edge_spacing, 2.0 / mesh.growth
     for i in range(n):
         before, by = scale * mesh.nodes[i], scale * mesh.nodes[i] * moved
         inner, outer = before + by - scale, before + by + scale
         inner, outer = sqrt(1.0 + inner * inner), sqrt(1.0 + outer * outer)
         inner, outer = inner + mesh.slopes[0, i], outer + mesh.slopes[1, i]
-        tanh = by * (inner + outer) / (inner * outer + by * by)
-        z = tanh * tanh
-        series = 1.0 / 9 + z * (1.0 / 11 + z * (1.0 / 13 + z / 15))
-        series = 1.0 + z * (1.0 / 3 + z * (1.0 / 5 + z * (1.0 / 7 + z * series)))
-        index[i] = i + halves * tanh * series
+        index[i] = by * (inner + outer) / (inner * outer + by * by)
+    if abs(scale * moved) < 0.6:
+        for i in range(n):
+            z = index[i] * index[i]
+            series = 1.0 / 9 + z * (1.0 / 11 + z * (1.0 / 13 + z / 15))
+            series = 1.0 + z * (1.0 / 3 + z * (1.0 / 5 + z * (1.0 / 7 + z * series)))
+            index[i] = i + halves * index[i] * series
+    else:
+        for i in range(n):
+            index[i] = i + 0.5 * halves * log((1.0 + index[i]) / (1.0 - index[i]))
     _interpolate(fields, index, work[1:], out)
-    _fade(fields, end, stretch, mesh.nodes, out)
+    _fade(fields, mesh.nodes[n - 1], stretch, mesh.nodes, out)
 
 
 @njit(float64(_V, _CONST, float64), **_COMPILED)
