@@ -13,14 +13,17 @@ from urllib.parse import urlsplit
 
 import pytest
 
+from softafm.announce import announced_compilation
+
 NO_BROWSER = "no browser: "
 PATIENCE = 120  # s: for a machine that compiles first, or is busy
 
 
 @pytest.fixture(scope="session", autouse=True)
 def compiled_solvers():
-    import softafm.solvers.energy_run
-    import softafm.solvers.explicit_run
+    with announced_compilation("tests"):
+        import softafm.solvers.energy_run
+        import softafm.solvers.explicit_run
 
     return softafm.solvers
 

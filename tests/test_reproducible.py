@@ -81,6 +81,24 @@ def printed(process):
     return json.loads(out)
 
 
+def test_processes_that_start_together_before_anything_is_compiled_give_the_same_bits(tmp_path):
+    example = Path(sa.__file__).parent / "examples" / "ldpe-tapping.toml"
+
+    def run(name):
+        command = [sys.executable, "-m", "softafm.cli", "run", str(example), "--out", name]
+        environment = {**os.environ, "NUMBA_CACHE_DIR": str(tmp_path / "compiled")}
+        return subprocess.Popen(
+            command, cwd=tmp_path, env=environment, stdout=subprocess.DEVNULL,
+            stderr=subprocess.DEVNULL,
+        )  # fmt: skip
+
+    first, second = run("first.nc"), run("second.nc")
+    assert first.wait(120) == second.wait(120) == 0
+    assert run("third.nc").wait(120) == 0  # of what both have kept
+    results = [sa.load(tmp_path / f"{name}.nc") for name in ("first", "second", "third")]
+    assert len(set(map(digest, results))) == 1
+
+
 @pytest.mark.parametrize("name", RUNS)
 def test_same_bits_in_one_process(name):
     assert digest(RUNS[name]()) == digest(RUNS[name]())

@@ -1,8 +1,12 @@
-"""Word to the user when compiled code is not at hand yet."""
+"""When compiled code is not at hand yet: word to the user, and one process that compiles."""
 
+import os
 import sys
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import ExitStack, contextmanager, suppress
+from hashlib import sha256
+from pathlib import Path
+from tempfile import gettempdir
 from threading import Timer
 
 _loaded: set[str] = set()
@@ -20,9 +24,11 @@ def announced_compilation(solver: str, patience: float = 3.0) -> Iterator[None]:
     """Tell the user, on stderr, if what happens inside takes longer than ``patience`` seconds.
 
     Loading compiled code takes under a second; only a machine's first run waits for the compiler.
-    Nothing is watched once the code of a ``solver`` is there.
+    Of several processes that start together one compiles and the others wait for what it made, as
+    code compiled in part by one and in part by another would round differently. Nothing is watched
+    once the code of a ``solver`` is there.
     """
-    if _silent or solver in _loaded:
+    if solver in _loaded:
         yield
         return
     notice = Timer(
@@ -32,9 +38,32 @@ def announced_compilation(solver: str, patience: float = 3.0) -> Iterator[None]:
         {"file": sys.stderr, "flush": True},
     )
     notice.daemon = True
-    notice.start()
+    if not _silent:
+        notice.start()
     try:
-        yield
+        with _in_turn():
+            yield
         _loaded.add(solver)
     finally:
         notice.cancel()
+
+
+@contextmanager
+def _in_turn() -> Iterator[None]:
+    """Let the first process of a user go ahead alone, all others after it; not on Windows."""
+    try:
+        import fcntl
+    except ImportError:
+        yield
+        return
+    package = sha256(__file__.encode()).hexdigest()[:12]
+    path = Path(gettempdir()) / f"softafm-{os.getuid()}-{package}.lock"
+    with ExitStack() as held:
+        with suppress(OSError):  # where there is no place for locks, everyone goes ahead
+            lock = os.open(path, os.O_RDWR | os.O_CREAT | os.O_NOFOLLOW, 0o600)
+            held.callback(os.close, lock)
+            try:
+                fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+            except BlockingIOError:
+                fcntl.flock(lock, fcntl.LOCK_SH)
+        yield

@@ -1,18 +1,23 @@
 """Small dense systems for compiled loops: factorise, solve, multiply.
 
 Written out by hand, as calls to LAPACK and BLAS cost more than the work at the 25 to 80 unknowns of
-a contact.
+a contact. Inner loops run over slices from 0: an index that the compiler cannot see to be positive
+might count from the end, and such a loop is not vectorised.
 """
 
 from numba import boolean, float64, int64, njit, types
 
-_FAST = {"reassoc", "contract", "nsz", "arcp"}
+_COMPILED: dict = {
+    "cache": True,
+    "fastmath": {"reassoc", "contract", "nsz", "arcp"},
+    "error_model": "numpy",
+}
 _V = float64[::1]
 _M = float64[:, ::1]
 _CONST2 = types.Array(float64, 2, "C", readonly=True)
 
 
-@njit(boolean(_M, int64), cache=True, fastmath=_FAST)
+@njit(boolean(_M, int64), **_COMPILED)
 def factorise(matrix, n):
     """RᵀD⁻¹R of the upper triangle in place, of Cholesky's kind without his roots.
 
@@ -85,7 +90,7 @@ def factorise(matrix, n):
     return True
 
 
-@njit((_M, _V, int64), cache=True, fastmath=_FAST)
+@njit((_M, _V, int64), **_COMPILED)
 def solve_factorised(factor, x, n):
     """Overwrite ``x`` with (RᵀD⁻¹R)⁻¹ x, four rows at a time."""
     whole = n - n % 4
@@ -130,7 +135,7 @@ def solve_factorised(factor, x, n):
         x[i], x[i + 1], x[i + 2], x[i + 3] = x0 * factor[i, i], x1, x2, x3
 
 
-@njit((_CONST2, _V, _V), cache=True, fastmath=_FAST)
+@njit((_CONST2, _V, _V), **_COMPILED)
 def multiply(matrix, x, out):
     """out = matrix x."""
     rows, columns = matrix.shape
@@ -141,7 +146,7 @@ def multiply(matrix, x, out):
         out[i] = total
 
 
-@njit((_CONST2, _CONST2, _M), cache=True, fastmath=_FAST)
+@njit((_CONST2, _CONST2, _M), **_COMPILED)
 def row_products(left, right, out):
     """out = left rightᵀ: dot products of the rows of two matrices, in blocks of 2 by 4."""
     rows, n = left.shape
@@ -174,7 +179,7 @@ def row_products(left, right, out):
             j += 1
 
 
-@njit(int64(_M, int64[::1]), cache=True, fastmath=_FAST)
+@njit(int64(_M, int64[::1]), **_COMPILED)
 def factorise_general(matrix, pivots):
     """LU of a square matrix in place, rows exchanged; returns the sign of the determinant.
 
@@ -212,25 +217,24 @@ def factorise_general(matrix, pivots):
                 f = matrix[p, q]
                 for j in range(end, n):
                     matrix[p, j] -= f * matrix[q, j]
-        i = end
-        while i + 2 <= n:
+        w, x = matrix[k, end:n], matrix[k + 1, end:n]
+        y, z = matrix[k + 2, end:n], matrix[k + 3, end:n]
+        for i in range(end, n - 1, 2):
             a0, a1, a2, a3 = matrix[i, k], matrix[i, k + 1], matrix[i, k + 2], matrix[i, k + 3]
             b0, b1 = matrix[i + 1, k], matrix[i + 1, k + 1]
             b2, b3 = matrix[i + 1, k + 2], matrix[i + 1, k + 3]
-            for j in range(end, n):
-                x0, x1, x2, x3 = matrix[k, j], matrix[k + 1, j], matrix[k + 2, j], matrix[k + 3, j]
-                matrix[i, j] -= a0 * x0 + a1 * x1 + a2 * x2 + a3 * x3
-                matrix[i + 1, j] -= b0 * x0 + b1 * x1 + b2 * x2 + b3 * x3
-            i += 2
-        if i < n:
-            a0, a1, a2, a3 = matrix[i, k], matrix[i, k + 1], matrix[i, k + 2], matrix[i, k + 3]
-            for j in range(end, n):
-                x0, x1, x2, x3 = matrix[k, j], matrix[k + 1, j], matrix[k + 2, j], matrix[k + 3, j]
-                matrix[i, j] -= a0 * x0 + a1 * x1 + a2 * x2 + a3 * x3
+            a, b = matrix[i, end:n], matrix[i + 1, end:n]
+            for j in range(a.size):
+                a[j] -= a0 * w[j] + a1 * x[j] + a2 * y[j] + a3 * z[j]
+                b[j] -= b0 * w[j] + b1 * x[j] + b2 * y[j] + b3 * z[j]
+        if (n - end) % 2 == 1:
+            a = matrix[n - 1]
+            for j in range(w.size):
+                a[end + j] -= a[k] * w[j] + a[k + 1] * x[j] + a[k + 2] * y[j] + a[k + 3] * z[j]
     return sign
 
 
-@njit((_M, int64[::1], _V), cache=True, fastmath=_FAST)
+@njit((_M, int64[::1], _V), **_COMPILED)
 def solve_general(factor, pivots, x):
     """Overwrite ``x`` with the solution of a system factorised by ``factorise_general``."""
     n = pivots.size

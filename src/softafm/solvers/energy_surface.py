@@ -206,8 +206,12 @@ class Surface:
         elastic = np.pi * frame * self.parameters.compliance[0] * (load @ mesh.stiffness @ load)
 
         def density(radius, deformation):
-            gap = h0 + self.contact.tip.profile(radius) - deformation
-            return self.contact.surface.potential(gap)
+            gap = (
+                h0 + self.contact.tip.profile(radius) - deformation - self.parameters.law[k.ORIGIN]
+            )
+            found = np.empty(gap.size)
+            self.functions[3](gap, self.parameters.law, found, gap.size)
+            return found
 
         near = frame**2 * mesh.masses @ density(frame * mesh.nodes, self.fields[k.DEFORMATION])
         end = frame * mesh.nodes[-1]
