@@ -1,7 +1,8 @@
 """Experiment files: TOML with units as text, read into the objects a Python user would build."""
 
 import tomllib
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass, field
 from importlib import resources
 from pathlib import Path
@@ -10,7 +11,9 @@ from typing import TYPE_CHECKING, Any
 from softafm import schema
 from softafm.contact import Contact
 from softafm.modes.check import finer_run
-from softafm.modes.start import refuse_start_inside, refuse_unable, regularised
+from softafm.modes.force_distance import ramp_observables
+from softafm.modes.start import carry, refuse_start_inside, refuse_unable, regularised
+from softafm.modes.tapping import tap_observables
 from softafm.refusals import ConfigError, as_written, nearest, one_of, shown, unknown
 
 if TYPE_CHECKING:
@@ -69,7 +72,7 @@ class Experiment:
         }
         options["progress"] = progress
         motion = self.motion
-        try:
+        with self._told_as_written():
             if self.mode == "approach-curve":
                 return sa.approach_curve(
                     self.contact,
@@ -92,10 +95,38 @@ class Experiment:
                 cycles=motion.cycles,
                 **options,
             )
+
+    def observables(self) -> dict[str, Any]:
+        """Return what ``run`` observes by name, without its dataset: that takes a while of its own.
+
+        Raises
+        ------
+        ConfigError
+            As ``run``.
+        """
+        if self.check or self.mode == "approach-curve":
+            return {str(name): found.values for name, found in self.run().variables.items()}
+        with self._told_as_written():
+            contact = regularised(self.contact, self.regularise)
+            lever = {} if self.cantilever is None else {"stiffness": self.cantilever.stiffness}
+            *_, history = carry(
+                contact, self.motion, self.solver, self.tolerance, False, None, **lever
+            )
+        if self.mode == "tapping-cycle":
+            found = tap_observables(contact, self.motion, history)
+        else:
+            path = history.motion.height(history.time) if lever else history.tip_height
+            found = ramp_observables(history, path)
+        return {name: values for name, (_, values) in found.items()}
+
+    @contextmanager
+    def _told_as_written(self) -> Iterator[None]:
+        """Reword what a mode refuses with what the file says."""
+        try:
+            yield
         except ValueError as error:
             for table in ("motion", "run"):
-                written = self.document.get(table, {})
-                line = as_written(table, written, error)
+                line = as_written(table, self.document.get(table, {}), error)
                 if line is not None:
                     raise ConfigError([line]) from error
             raise

@@ -114,8 +114,8 @@ class RunExperiment:
     def __call__(self, values: Mapping[str, Any]) -> dict[str, Any]:
         experiment = self.experiment(values)
         kept = _kept(experiment.contact)
-        result = replace(experiment, contact=kept).run()
-        return {name: result.variables[name].values for name in self.names}
+        found = replace(experiment, contact=kept).observables()
+        return {name: found[name] for name in self.names}
 
     def experiment(self, values: Mapping[str, Any]):
         """Return the experiment of a run; ConfigError if there is none."""
