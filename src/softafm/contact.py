@@ -251,7 +251,7 @@ class Contact:
     def _last_contact(self) -> tuple[float, float]:
         """Radius of the smallest stable relaxed contact, and the depth of the tip there, m."""
         radius = self.tip.radius_at(self.reach) * np.geomspace(1e-6, 1e6, 6 * _POINTS)
-        for _ in range(_ZOOMS):
+        for _ in range(_ZOOMS // 2 + 1):  # a least depth has twice the digits of its radius
             depth = self._relaxed_depth(radius)
             least = np.clip(depth.argmin(), 1, radius.size - 2)
             radius = np.linspace(radius[least - 1], radius[least + 1], _POINTS)
