@@ -328,6 +328,20 @@ def test_a_nonlinear_feedback_is_found():
     assert offs[-1] < 1e-6 * offs[0]
 
 
+@pytest.mark.parametrize(
+    ("misses", "scatter"),
+    [
+        ([7.3, 4.9, 3.3, 2.2, 0.19, 0.087, 0.134, 0.011], 0),  # as a tap settles
+        ([3.0, 5.0, 2.0, 4.0, 1.5, 0.5, 0.1, 0.003], 0),
+        ([8.4, 2.0, 0.5, 0.06, 0.17, 0.01, 0.05, 0.02, 0.06, 0.04, 0.05, 0.003], 0.045),
+    ],
+)
+def test_cycles_that_scatter_are_not_steady_by_chance(misses, scatter):
+    from softafm.solvers.energy_run import _scatter
+
+    assert _scatter(misses) == pytest.approx(scatter)
+
+
 def test_cycles_that_find_no_steady_state_are_warned_of(monkeypatch):
     from softafm.solvers import energy_run
 

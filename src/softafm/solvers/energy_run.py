@@ -1,6 +1,7 @@
 """One run of the energy solver: from stop to stop, through falls, into a history."""
 
 from collections.abc import Iterator
+from itertools import pairwise
 from math import sqrt
 
 import numpy as np
@@ -121,6 +122,7 @@ class Run:
             self.unsteady = off / surface.edge_gap
             misses.append(self.unsteady)
             if self.unsteady <= self.steadiness or _stagnates(misses):
+                self.unsteady = max(self.unsteady, _scatter(misses))
                 return
             surface.remember(memory)
 
@@ -290,9 +292,9 @@ class Run:
         if self.unsteady <= self.steadiness:
             return ()
         return (
-            f"no steady cycle after {self.cycle}: the surface starts the last one off by up to "
-            f"{self.unsteady:.2g} gaps of largest tension from where it would end. Choose a number "
-            "of cycles instead",
+            f"no steady cycle after {self.cycle}: the surface starts the last ones off by up to "
+            f"{self.unsteady:.2g} gaps of largest tension from where they would end. Choose a "
+            "number of cycles instead",
         )
 
     def _too_coarse(self) -> tuple[str, ...]:
@@ -350,3 +352,13 @@ def _stagnates(misses: list[float]) -> bool:
         return False
     before, recent = misses[-2 * _PATIENCE : -_PATIENCE], misses[-_PATIENCE:]
     return min(recent) > 0.5 * min(before)
+
+
+def _scatter(misses: list[float]) -> float:
+    """How far off cycles are that do not settle, in gaps, even if one is near by chance; else 0.
+
+    The misses of cycles that settle fall, once they are small, but for one or two.
+    """
+    small = misses[next((i for i, miss in enumerate(misses) if miss < 1), len(misses)) :]
+    rises = sum(later > earlier for earlier, later in pairwise(small))
+    return float(np.median(small[-_PATIENCE:])) if rises > 2 else 0.0
