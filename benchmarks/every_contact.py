@@ -107,7 +107,8 @@ def main(number=100, seed=0):
         if worst[-1] > 1e-2:
             name = OBSERVABLES[int(np.argmax(errors))]
             kinds = f"{contact.tip.kind}, {law.kind}, {contact.sample.kind}"
-            print(f"{100 * worst[-1]:5.2f} % in {name}: {kinds} (seed {seed - 1})", flush=True)
+            told = f"{kinds} (seed {seed - 1}{', warned' if warns else ''})"
+            print(f"{100 * worst[-1]:5.2f} % in {name}: {told}", flush=True)
     within = np.mean(np.array(worst) <= 1e-2)
     half, most, largest = 100 * np.quantile(worst, [0.5, 0.99, 1.0])
     print(

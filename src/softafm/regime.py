@@ -1,6 +1,6 @@
 """What an experiment is before it runs, and what it will cost: numbers, and a table for people."""
 
-from math import isfinite
+from math import isfinite, log10
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
@@ -21,8 +21,11 @@ if TYPE_CHECKING:
     from softafm.contact import Contact
     from softafm.oscillator import Drive
 
-_TAPS, _CHECKED = 130, 4
-"""Taps of an approach curve, and runs that one with its check is worth, by experience."""
+_TAPS, _CHECKED, _TENTH = 130, 4, 2.8
+"""By experience: taps of an approach curve, runs that one with its check is worth, and one with a
+tenth of the tolerance."""
+_USUAL = 1e-2
+"""Tolerance for which solvers tell what to expect."""
 _FLOWS = "flows"
 _SOFT, _ADVISED = 30, 8
 """Tabor number from which on another is advised."""
@@ -109,7 +112,10 @@ def _solver(experiment: "Experiment") -> Any:
 
 def _seconds(experiment: "Experiment", case: _Case) -> float:
     runs = (_TAPS if case.drive else 1) * (_CHECKED if experiment.check else 1)
-    return runs * _solver(experiment).expected_seconds(case.contact, case.motion)
+    solver = _solver(experiment)
+    if solver.adaptive:
+        runs *= _TENTH ** log10(_USUAL / experiment.tolerance)
+    return runs * solver.expected_seconds(case.contact, case.motion)
 
 
 def _cost_of(experiment: "Experiment", case: _Case) -> str:

@@ -88,7 +88,7 @@ class Energy:
     def expected_seconds(self, contact, motion) -> float:
         """Order of magnitude of a run at the default tolerance, s on one core, as measured."""
         cycles = getattr(motion, "periods", 1)
-        return 1e-2 * cycles + 1e-4 * cohesive_lengths_crossed(contact, motion)
+        return 4e-3 * cycles + 2e-5 * cohesive_lengths_crossed(contact, motion)
 
 
 def cohesive_lengths_crossed(contact, motion) -> float:
