@@ -27,7 +27,8 @@ class Run:
     """Carries a surface through a motion and keeps what happens."""
 
     def __init__(self, solver, contact, motion, stiffness, tolerance: float, keep_shapes: bool):
-        self.solver, self.contact, self.motion = solver, contact, motion
+        self.solver, self.contact = solver, contact
+        self._follow(motion)
         self.strictness = tolerance / 1e-2
         self.surface = Surface(contact, motion, stiffness, self.strictness, solver.finest_spacing)
         gap = self.surface.edge_gap
@@ -72,7 +73,7 @@ class Run:
             )
         first = surface.time
         while (stop := self._next_stop()) is not None:
-            if surface.time in self.motion.breaks:
+            if surface.time in self.breaks:
                 self._begin_piece(stop)
             surface.target = self.target
             # However little happens, smooth curves need points.
@@ -96,7 +97,7 @@ class Run:
                     self._fall(stop)
                 if outcome == k.TRIGGERED:
                     self._turn()
-                yield (surface.time - first) / (self.motion.breaks[-1] - first)
+                yield (surface.time - first) / (self.breaks[-1] - first)
 
     def cycles(self) -> Iterator[float]:
         """Run the motion over and over, until the memory ends a cycle as it began it.
@@ -105,7 +106,7 @@ class Run:
         """
         surface, start = self.surface, self.surface.time
         modes, times = surface.parameters.compliance[1:], surface.parameters.retardation
-        period = self.motion.breaks[-1] - start
+        period = self.breaks[-1] - start
         periodic = PeriodicMemory(period, modes, times, surface.edge_gap)
         if times.max(initial=0) > period:  # small errors of a cycle add up
             surface.clock[k.CONTRACTION] = np.inf
@@ -126,25 +127,29 @@ class Run:
                 return
             surface.remember(memory)
 
+    def _follow(self, motion):
+        """Take a motion for what is to be done, and the instants that a step of it has to meet."""
+        self.motion, self.breaks = motion, motion.breaks
+        self.stops = np.sort(np.concatenate([motion.breaks, motion.landmarks]))
+
     def _next_stop(self):
         """Return the next instant that a step has to meet, s, or None at the end."""
-        stops = np.concatenate([self.motion.breaks, self.motion.landmarks])
-        ahead = stops[stops > self.surface.time]
-        return float(ahead.min()) if ahead.size else None
+        ahead = np.searchsorted(self.stops, self.surface.time, side="right")
+        return float(self.stops[ahead]) if ahead < self.stops.size else None
 
     def _trigger(self, stop) -> float:
         """Return the force that turns the ramp before ``stop``, N."""
         force = getattr(self.motion, "setpoint_force", None)
-        return np.inf if force is None or stop > self.motion.breaks[1] else force
+        return np.inf if force is None or stop > self.breaks[1] else force
 
     def _turn(self):
         """Let the ramp turn now, its force having been reached."""
         surface = self.surface
-        self.motion = self.motion.turned_at(surface.time)
+        self._follow(self.motion.turned_at(surface.time))
         height, parameters = self.motion.compiled_height
         surface.functions = (height, *surface.functions[1:])
         surface.parameters = surface.parameters._replace(height=parameters)
-        surface.clock[k.TIME] = self.motion.breaks[1]
+        surface.clock[k.TIME] = self.breaks[1]
         self.chunks[-1][-1, k.R_TIME] = surface.time
 
     def _begin_piece(self, stop):
@@ -254,7 +259,7 @@ class Run:
         surface = self.surface
         records = np.concatenate(self.chunks)
         time, jumped = records[:, k.R_TIME], records[:, k.R_JUMP] != 0
-        breaks = np.flatnonzero(np.isin(time, self.motion.breaks[1:-1]))
+        breaks = np.flatnonzero(np.isin(time, self.breaks[1:-1]))
         fallen = np.flatnonzero(np.isin(time, self.falls))
         cuts = sorted([(i, i + 1) for i in breaks] + [(i, i) for i in fallen])
         starts = [0] + [start for start, _ in cuts]
