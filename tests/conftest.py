@@ -14,6 +14,7 @@ from urllib.parse import urlsplit
 import pytest
 
 from softafm.announce import announced_compilation
+from softafm.cli import main
 
 NO_BROWSER = "no browser: "
 PATIENCE = 120  # s: for a machine that compiles first, or is busy
@@ -33,6 +34,19 @@ def reference_cases():
     """Converged results of independent solvers by name (see data/README.md)."""
     cases = json.loads((Path(__file__).parent / "data" / "cases.json").read_text())
     return {case["name"]: case for case in cases}
+
+
+@pytest.fixture
+def softafm(capsys):
+    """Run a command line; return its exit code, stdout and stderr."""
+
+    def softafm(*arguments):
+        capsys.readouterr()
+        code = main([str(argument) for argument in arguments])
+        said = capsys.readouterr()
+        return code, said.out, said.err
+
+    return softafm
 
 
 def pytest_terminal_summary(terminalreporter):

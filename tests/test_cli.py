@@ -32,19 +32,6 @@ def folder(tmp_path, monkeypatch):
 
 
 @pytest.fixture
-def softafm(capsys):
-    """Run a command line; return its exit code, stdout and stderr."""
-
-    def softafm(*arguments):
-        capsys.readouterr()
-        code = main([str(argument) for argument in arguments])
-        said = capsys.readouterr()
-        return code, said.out, said.err
-
-    return softafm
-
-
-@pytest.fixture
 def wide(monkeypatch):
     """A terminal in which no row of a table is broken."""
     monkeypatch.setenv("COLUMNS", "250")

@@ -15,7 +15,6 @@ from softafm import schema
 from softafm.app.form import presets
 from softafm.campaigns.map_file import load_map, map_from
 from softafm.campaigns.patterns import blend
-from softafm.cli import main
 from softafm.config import ConfigError, example_names, example_text, load_experiment, map_names
 
 SMALL = ("map.pixels=[8, 8]", "map.size=['100 nm', '50 nm']", "map.interphase=15 nm")
@@ -54,16 +53,9 @@ def folder(tmp_path, monkeypatch):
 
 
 @pytest.fixture
-def softafm(capsys, monkeypatch):
-    """Run a command line; return its exit code, stdout and stderr."""
+def softafm(softafm, monkeypatch):
+    """The command line, on a terminal that is wide enough."""
     monkeypatch.setenv("COLUMNS", "200")
-
-    def softafm(*arguments):
-        capsys.readouterr()
-        code = main([str(argument) for argument in arguments])
-        said = capsys.readouterr()
-        return code, said.out, said.err
-
     return softafm
 
 

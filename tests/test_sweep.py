@@ -14,25 +14,11 @@ from swept import XS, YS, calm
 import softafm as sa
 from softafm.campaigns import sweep as sweeps
 from softafm.campaigns.store import Store
-from softafm.cli import main
 from softafm.config import example_text
 
 TAP = tomllib.loads(example_text("ldpe-tapping"))
 HEIGHTS = ["42 nm", "43 nm", "44 nm"]
 GRID = {"x": XS, "y": YS}
-
-
-@pytest.fixture
-def softafm(capsys):
-    """Run a command line; return its exit code, stdout and stderr."""
-
-    def softafm(*arguments):
-        capsys.readouterr()
-        code = main([str(argument) for argument in arguments])
-        said = capsys.readouterr()
-        return code, said.out, said.err
-
-    return softafm
 
 
 @pytest.fixture

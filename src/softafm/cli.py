@@ -107,19 +107,12 @@ def run(
     changes += [f"run.regularise={regularise}"] if regularise is not None else []
     with _bad_input():
         from softafm import results
-        from softafm.config import ConfigError, load_experiment
+        from softafm.config import load_experiment
         from softafm.summary import observables
 
         experiment = load_experiment(config, changes)
         out = _output(out, f"{config.stem}.nc", (".nc",), force)
-    with _visible_warnings():
-        try:
-            with _progress() as progress:
-                dataset = experiment.run(progress)
-        except ConfigError as error:
-            raise _BadInput(str(error)) from error
-        except RuntimeError as error:
-            raise _Failure(f"the run failed: {error}") from error
+    dataset = _carried_out("run", experiment.run)
     _save(results.save, dataset, out, force)
     _print(observables(dataset))
     typer.echo(f"saved {out}")
@@ -138,23 +131,29 @@ def scan(
         from softafm import results
         from softafm._validate import whole
         from softafm.campaigns.map_file import load_map
-        from softafm.config import ConfigError
         from softafm.summary import observables
 
         workers = _cores() if workers is None else whole("--workers", workers, 1, 1024)
         experiment = load_map(config, overrides or [])
         out = _output(out, f"{config.stem}.nc", (".nc",), force)
-    with _visible_warnings():
-        try:
-            with _progress() as progress:
-                dataset = experiment.run(workers, progress)
-        except ConfigError as error:
-            raise _BadInput(str(error)) from error
-        except RuntimeError as error:
-            raise _Failure(f"the scan failed: {error}") from error
+    dataset = _carried_out("scan", partial(experiment.run, workers))
     _save(results.save, dataset, out, force)
     _print(observables(dataset))
     typer.echo(f"saved {out}")
+
+
+def _carried_out(what: str, run: "Callable[..., Dataset]") -> "Dataset":
+    """Return what a run gives, shown as it goes on; why it ends early is told in one line."""
+    from softafm.config import ConfigError
+
+    with _visible_warnings():
+        try:
+            with _progress() as progress:
+                return run(progress)
+        except ConfigError as error:
+            raise _BadInput(str(error)) from error
+        except RuntimeError as error:
+            raise _Failure(f"the {what} failed: {error}") from error
 
 
 def _cores() -> int:
