@@ -4,10 +4,9 @@ import os
 import sys
 from collections.abc import Iterator
 from contextlib import ExitStack, contextmanager, suppress
-from hashlib import sha256
-from pathlib import Path
-from tempfile import gettempdir
 from threading import Timer
+
+from softafm import code_store
 
 _loaded: set[str] = set()
 _silent = False
@@ -50,17 +49,21 @@ def announced_compilation(solver: str, patience: float = 3.0) -> Iterator[None]:
 
 @contextmanager
 def _in_turn() -> Iterator[None]:
-    """Let the first process of a user go ahead alone, all others after it; not on Windows."""
+    """Let the first process of a user go ahead alone, all others after it; not on Windows.
+
+    Nor where nothing can be kept, as each of them compiles everything then.
+    """
+    place = code_store.folder()
     try:
         import fcntl
     except ImportError:
+        place = None
+    if place is None:
         yield
         return
-    package = sha256(__file__.encode()).hexdigest()[:12]
-    path = Path(gettempdir()) / f"softafm-{os.getuid()}-{package}.lock"
     with ExitStack() as held:
         with suppress(OSError):  # where there is no place for locks, everyone goes ahead
-            lock = os.open(path, os.O_RDWR | os.O_CREAT | os.O_NOFOLLOW, 0o600)
+            lock = os.open(place / "lock", os.O_RDWR | os.O_CREAT | os.O_NOFOLLOW, 0o600)
             held.callback(os.close, lock)
             try:
                 fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)

@@ -1,18 +1,24 @@
-"""Compiled functions that solvers call: surface laws, tip profiles, motions.
+"""Compiled functions: the solvers' loops, and the laws, tip profiles and motions that they call.
 
-They are first-class typed functions over whole arrays: a solver compiled once serves every law, tip
-and motion, from the on-disk cache, at the speed of inlined code.
+The latter are first-class typed functions over whole arrays: a solver compiled once serves every
+law, tip and motion, from the store on disk, at the speed of inlined code.
 """
 
+import pickle
+import sys
 from collections.abc import Callable
-from functools import cache, cached_property
+from functools import cache, cached_property, partial
 from hashlib import sha256
 from typing import Any
 
 from numba import float64, int64, njit, types, void
+from numba.core.caching import _Cache
+from numba.core.compiler import CompileResult
+from numba.core.serialize import dumps
 from numba.experimental.function_type import _get_wrapper_address
 from numba.extending import typeof_impl
 
+from softafm import code_store
 from softafm.formulas import Shape
 
 _ARRAY = float64[::1]
@@ -37,10 +43,84 @@ HEIGHT = float64(float64, _ARRAY)
 """``(time, parameters) -> height``: tip height above the undeformed surface, in m."""
 
 
+def compile_for(signature: Any, **options: Any) -> Callable[[Callable], Any]:
+    """Decorate a function, to be compiled for ``signature`` here and now, or taken from the store.
+
+    Parameters
+    ----------
+    signature
+        Types of the arguments, with that of what it returns if that is to be stated, for numba.
+    options
+        Of ``numba.njit``, in place of those that all loops have.
+
+    Raises
+    ------
+    RuntimeError
+        If the function's file is not among those that a build is named after.
+    """
+
+    def compile_now(function: Callable) -> Any:
+        if not code_store.is_ours(function.__code__.co_filename):
+            raise RuntimeError(f"{function.__code__.co_filename} is not in code_store.ROOMS")
+        dispatcher = njit(**(_OPTIONS | options))(function)
+        dispatcher._cache = _Store(function)
+        dispatcher.compile(signature)
+        dispatcher.disable_compile()
+        return dispatcher
+
+    return compile_now
+
+
+class _Store(_Cache):
+    """Numba's way to the compiled code of one function in ``softafm.code_store``.
+
+    Its own cache notices changes of the file that a function is in, but not of others whose
+    functions it calls.
+    """
+
+    cache_path = ""
+    _warned = False
+
+    def __init__(self, function: Callable):
+        self._name = f"{function.__module__}.{function.__qualname__}"
+
+    def load_overload(self, sig, target_context):
+        """Return the code compiled for a signature, None if there is none."""
+        target_context.refresh()
+        content = code_store.read(self._file(sig))
+        if content is None:
+            return None
+        return CompileResult._rebuild(target_context, *pickle.loads(content))
+
+    def save_overload(self, sig, data):
+        """Keep the code compiled for a signature."""
+        try:
+            code_store.write(self._file(sig), dumps(data._reduce()))
+        except OSError as error:
+            if not _Store._warned:
+                _Store._warned = True
+                reason = f"softafm: compiled code cannot be kept: {error.strerror or error}"
+                remedy = "set NUMBA_CACHE_DIR to a folder that can be written"
+                print(f"{reason}; {remedy}", file=sys.stderr)
+
+    def _file(self, signature) -> str:
+        typed = sha256(f"{self._name}\0{signature}".encode()).hexdigest()
+        return f"{self._name}-{typed[:16]}"
+
+    def enable(self):
+        """Do nothing: it always serves."""
+
+    def disable(self):
+        """Do nothing: it always serves."""
+
+    def flush(self):
+        """Do nothing: code of another build is never found."""
+
+
 class CompiledFunction(types.WrapperAddressProtocol):
     """A function compiled for one signature, to be called from Python or handed to a kernel.
 
-    It is compiled, or loaded from the disk cache, at its first use, and its address is looked up
+    It is compiled, or loaded from the store, at its first use, and its address is looked up
     once, and so is its type: numba would do that at every call, at 0.1 ms each.
     """
 
@@ -50,7 +130,8 @@ class CompiledFunction(types.WrapperAddressProtocol):
 
     @cached_property
     def _compiled(self):
-        return njit(self._signature, cache=self._on_disk, **_OPTIONS)(self._python)
+        compile_it = compile_for if self._on_disk else partial(njit, **_OPTIONS)
+        return compile_it(self._signature)(self._python)
 
     @cached_property
     def _address(self) -> int:
@@ -112,18 +193,17 @@ def profile_function(shape: Shape) -> CompiledFunction:
 
 
 def _is_ours(shape: Shape) -> bool:
-    """Whether compiled code may be kept on disk: a user's may depend on more than its file."""
-    return shape.function.__module__.startswith("softafm.")
+    """Whether compiled code may be kept on disk: nobody knows what a user's depends on."""
+    return code_store.is_ours(_python(shape.function).__code__.co_filename)
 
 
 def _loop(shapes: tuple[Shape, ...], arguments: str, x: str, first: int, results) -> Callable:
     """Write the function that adds up formulas over an array, as dataclasses write methods.
 
     Parameters start at index ``first``. ``results`` names the array for each result of a formula,
-    "" where there is none. The function passes for one of the first formula's file, where numba
-    looks for changes.
+    "" where there is none.
     """
-    known: dict[str, Any] = {"__name__": _python(shapes[0].function).__module__}
+    known: dict[str, Any] = {"__name__": __name__}
     lines, calls = [f" at = {first}"], []
     for k, (function, count) in enumerate(shapes):
         known[f"formula_{k}"] = function if _is_compiled(function) else _formula(function)
@@ -146,7 +226,7 @@ def _loop(shapes: tuple[Shape, ...], arguments: str, x: str, first: int, results
     codes = [_python(shape.function).__code__ for shape in shapes]
     key = body + "".join(f"{c.co_code!r}{c.co_consts!r}{c.co_names!r}" for c in codes)
     name = f"loop_{sha256(key.encode()).hexdigest()[:16]}"
-    exec(compile(f"def {name}({arguments}):\n{body}\n", codes[0].co_filename, "exec"), known)
+    exec(compile(f"def {name}({arguments}):\n{body}\n", __file__, "exec"), known)
     return known[name]
 
 

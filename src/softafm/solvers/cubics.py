@@ -1,12 +1,18 @@
 """Interpolation of a history by local cubics."""
 
-from numba import float64, int64, njit
+from numba import float64, int64
+
+from softafm.compiled import compile_for
 
 _LONGEST = 10.0
 """How many times as long as one beside it an interval may be for a cubic to cross it."""
 
 
-@njit((float64[:], float64[:, :], int64[:, ::1], float64[:, :, ::1]), cache=True)
+@compile_for(
+    (float64[:], float64[:, :], int64[:, ::1], float64[:, :, ::1]),
+    fastmath=False,
+    error_model="python",
+)
 def cubics(time, at, near, basis):
     """Lagrange's polynomials through the four instants of ``time`` (n,) nearest to points in time.
 

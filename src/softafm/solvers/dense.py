@@ -5,19 +5,16 @@ a contact. Inner loops run over slices from 0: an index that the compiler cannot
 might count from the end, and such a loop is not vectorised.
 """
 
-from numba import boolean, float64, int64, njit, types
+from numba import boolean, float64, int64, types
 
-_COMPILED: dict = {
-    "cache": True,
-    "fastmath": {"reassoc", "contract", "nsz", "arcp"},
-    "error_model": "numpy",
-}
+from softafm.compiled import compile_for
+
 _V = float64[::1]
 _M = float64[:, ::1]
 _CONST2 = types.Array(float64, 2, "C", readonly=True)
 
 
-@njit(boolean(_M, int64), **_COMPILED)
+@compile_for(boolean(_M, int64))
 def factorise(matrix, n):
     """RᵀD⁻¹R of the upper triangle in place, of Cholesky's kind without his roots.
 
@@ -90,7 +87,7 @@ def factorise(matrix, n):
     return True
 
 
-@njit((_M, _V, int64), **_COMPILED)
+@compile_for((_M, _V, int64))
 def solve_factorised(factor, x, n):
     """Overwrite ``x`` with (RᵀD⁻¹R)⁻¹ x, four rows at a time."""
     whole = n - n % 4
@@ -135,7 +132,7 @@ def solve_factorised(factor, x, n):
         x[i], x[i + 1], x[i + 2], x[i + 3] = x0 * factor[i, i], x1, x2, x3
 
 
-@njit((_CONST2, _V, _V), **_COMPILED)
+@compile_for((_CONST2, _V, _V))
 def multiply(matrix, x, out):
     """out = matrix x."""
     rows, columns = matrix.shape
@@ -146,7 +143,7 @@ def multiply(matrix, x, out):
         out[i] = total
 
 
-@njit((_CONST2, _CONST2, _M), **_COMPILED)
+@compile_for((_CONST2, _CONST2, _M))
 def row_products(left, right, out):
     """out = left rightᵀ: dot products of the rows of two matrices, in blocks of 2 by 4."""
     rows, n = left.shape
@@ -179,7 +176,7 @@ def row_products(left, right, out):
             j += 1
 
 
-@njit(int64(_M, int64[::1]), **_COMPILED)
+@compile_for(int64(_M, int64[::1]))
 def factorise_general(matrix, pivots):
     """LU of a square matrix in place, rows exchanged; returns the sign of the determinant.
 
@@ -234,7 +231,7 @@ def factorise_general(matrix, pivots):
     return sign
 
 
-@njit((_M, int64[::1], _V), **_COMPILED)
+@compile_for((_M, int64[::1], _V))
 def solve_general(factor, pivots, x):
     """Overwrite ``x`` with the solution of a system factorised by ``factorise_general``."""
     n = pivots.size

@@ -12,26 +12,17 @@ more, solved for together with the surface. Where q is listed with u it stands i
 
 Memory is carried as displacements: q = K p and y_m = K w_m with τ_m ẏ_m = q − y_m, so that
 u = −(J_g q + Σ J_m y_m), and a change of frame is an interpolation of smooth fields.
-
-All of it stands in one file because numba's disk cache only notices changes of the file that a
-function is in.
 """
 
 from math import asinh, exp, floor, inf, log, pi, sqrt
 from typing import NamedTuple
 
 import numpy as np
-from numba import float64, int64, njit, types
+from numba import float64, int64, types
 
-from softafm.compiled import HEIGHT, POTENTIAL, PRESSURE, PROFILE, pointer
+from softafm.compiled import HEIGHT, POTENTIAL, PRESSURE, PROFILE, compile_for, pointer
 from softafm.solvers.dense import factorise, multiply, row_products, solve_factorised
 
-_COMPILED: dict = {
-    "cache": True,
-    "fastmath": {"reassoc", "contract", "nsz", "arcp"},
-    # Loops that might raise ZeroDivisionError are not vectorised.
-    "error_model": "numpy",
-}
 _V = float64[::1]
 _M = float64[:, ::1]
 _CONST = types.Array(float64, 1, "C", readonly=True)
@@ -150,7 +141,7 @@ BACKGROUND = types.NamedTuple((_M, float64, float64, float64, float64, float64),
 CONTROLS = types.NamedUniTuple(float64, len(Controls._fields), Controls)
 
 
-@njit((_M, _V, _M, _M), **_COMPILED)
+@compile_for((_M, _V, _M, _M))
 def _interpolate(fields, index, weights, out):
     """Fields (m, n), even in the node index, at fractional indices: six-point Lagrange.
 
@@ -179,7 +170,7 @@ def _interpolate(fields, index, weights, out):
             )
 
 
-@njit((_M, float64, float64, _CONST, _M), **_COMPILED)
+@compile_for((_M, float64, float64, _CONST, _M))
 def _fade(fields, end, stretch, nodes, out):
     """Continue fields beyond the ``end`` of their mesh as 1/r."""
     last = fields.shape[1] - 1
@@ -191,7 +182,7 @@ def _fade(fields, end, stretch, nodes, out):
             out[m, i] = fields[m, last] * end / r
 
 
-@njit((_M, float64, float64, float64, float64, _CONST, _M, _M), **_COMPILED)
+@compile_for((_M, float64, float64, float64, float64, _CONST, _M, _M))
 def transfer(fields, end, edge_spacing, growth, stretch, nodes, work, out):
     """Evaluate displacement fields of one mesh at radii ``stretch``·``nodes`` of another.
 
@@ -207,7 +198,7 @@ def transfer(fields, end, edge_spacing, growth, stretch, nodes, work, out):
     _fade(fields, end, stretch, nodes, out)
 
 
-@njit((_M, MESH, float64, _M, _M), **_COMPILED)
+@compile_for((_M, MESH, float64, _M, _M))
 def reframe(fields, mesh, stretch, work, out):
     """As ``transfer``, to a frame ``stretch`` times larger on the same mesh.
 
@@ -241,7 +232,7 @@ def reframe(fields, mesh, stretch, work, out):
     _fade(fields, mesh.nodes[n - 1], stretch, mesh.nodes, out)
 
 
-@njit(float64(_V, _CONST, float64), **_COMPILED)
+@compile_for(float64(_V, _CONST, float64))
 def radius_of_gap(gap, nodes, value):
     """Smallest radius (in units of the frame) where the gap reaches ``value``."""
     if gap[0] >= value:
@@ -253,7 +244,7 @@ def radius_of_gap(gap, nodes, value):
     return nodes[nodes.size - 1]
 
 
-@njit((MESH, float64, _V, float64, float64, _M), **_COMPILED)
+@compile_for((MESH, float64, _V, float64, float64, _M))
 def _assemble(mesh, scale, slope, shift, lever, hessian):
     """Upper triangle of S·scale − diag(m (p' − shift)), bordered by a lever's row if it has one.
 
@@ -272,7 +263,7 @@ def _assemble(mesh, scale, slope, shift, lever, hessian):
     hessian[n, n] = total + shift
 
 
-@njit((float64, _V, MESH, pointer(PRESSURE), _V, _M), **_COMPILED)
+@compile_for((float64, _V, MESH, pointer(PRESSURE), _V, _M))
 def beyond_mesh(gap, rise, mesh, law, parameters, work):
     """Force that acts beyond the last node and minus its derivative with the gap, both over 2πa².
 
@@ -290,12 +281,11 @@ def beyond_mesh(gap, rise, mesh, law, parameters, work):
     return force, stiffness
 
 
-@njit(
+@compile_for(
     int64(
         _V, _V, float64, _V, float64, float64, _V,
         MESH, pointer(PRESSURE), _V, float64, float64, _V, _M, _M, _M,
     ),
-    **_COMPILED,
 )  # fmt: skip
 def equilibrate(
     u, v, ac, standoff, lever, rest, rise,
@@ -368,12 +358,11 @@ def equilibrate(
     return -8
 
 
-@njit(
+@compile_for(
     int64(
         _V, _V, float64, _V, float64, _V,
         MESH, pointer(PRESSURE), pointer(POTENTIAL), _V, float64,
     ),
-    **_COMPILED,
 )  # fmt: skip
 def settle(u, v, ac, standoff, lever, rise, mesh, law, potential, parameters, accuracy):
     """Descend from ``u``, in place, to a stable shape of u = v − c K p(standoff + q − u).
@@ -449,7 +438,7 @@ def settle(u, v, ac, standoff, lever, rise, mesh, law, potential, parameters, ac
     return -1
 
 
-@njit(float64(_V, _V, _V, MESH, float64, pointer(PRESSURE), _V, _M), **_COMPILED)
+@compile_for(float64(_V, _V, _V, MESH, float64, pointer(PRESSURE), _V, _M))
 def tip_force(pressure, gap, rise, mesh, frame, law, parameters, far_work):
     """Force on the tip, N: the mesh's share and that of the flat surface beyond it."""
     n = gap.size
@@ -459,7 +448,7 @@ def tip_force(pressure, gap, rise, mesh, frame, law, parameters, far_work):
     return 2.0 * pi * frame * frame * total
 
 
-@njit((pointer(PROFILE), _V, MESH, float64, _V, _V, _V), **_COMPILED)
+@compile_for((pointer(PROFILE), _V, MESH, float64, _V, _V, _V))
 def raise_tip(profile, parameters, mesh, frame, scratch, tip, rise):
     """Heights of the tip above its apex at the nodes, and above the last node beyond the mesh."""
     n, far = mesh.nodes.size, mesh.far.size
@@ -473,7 +462,7 @@ def raise_tip(profile, parameters, mesh, frame, scratch, tip, rise):
         rise[i] -= tip[n - 1]
 
 
-@njit((float64, float64, int64, _V, _V, _M), **_COMPILED)
+@compile_for((float64, float64, int64, _V, _V, _M))
 def memory_weights(step, last, order, compliance, retardation, weights):
     """Weights of y⁺ = decay·y + earlier·q₋ + now·q + new·q⁺ over a step, one row per mode.
 
@@ -512,7 +501,7 @@ def memory_weights(step, last, order, compliance, retardation, weights):
             row[_NEW] += bend / (1.0 + ratio)
 
 
-@njit((int64, float64, float64, float64, _V), **_COMPILED)
+@compile_for((int64, float64, float64, float64, _V))
 def extrapolation_weights(history, step, last, before, weights):
     """Weights of the last shapes that extrapolate them by ``step``: order ``history`` − 1."""
     weights[0], weights[1], weights[2] = 1.0, 0.0, 0.0
@@ -525,14 +514,14 @@ def extrapolation_weights(history, step, last, before, weights):
         weights[2] = step * near / (before * (last + before))
 
 
-@njit(float64(float64, float64), **_COMPILED)
+@compile_for(float64(float64, float64))
 def frame_for(edge, open_frame):
     """Frame radius that suits a contact edge; a contact too small to fill the field of attraction
     is seen from a wider frame, ``open_frame`` when there is none."""
     return max(edge, open_frame - 1.5 * edge)
 
 
-@njit(float64(float64, _V, MESH, CONTROLS), **_COMPILED)
+@compile_for(float64(float64, _V, MESH, CONTROLS))
 def following_frame(step, clock, mesh, controls):
     """Frame radius for the next step, which rides along with the edge.
 
@@ -553,7 +542,7 @@ def following_frame(step, clock, mesh, controls):
     return max(ridden + pace * (suited - frame), 0.5 * frame)
 
 
-@njit((float64, float64, int64, _M, _V, MESH, _V, _V, _M, _M), **_COMPILED)
+@compile_for((float64, float64, int64, _M, _V, MESH, _V, _V, _M, _M))
 def predict(frame, step, history, fields, clock, mesh, weights, guess, work, shape):
     """Extrapolate the last ``history`` shapes to the new frame, as seen riding on the edge."""
     n = mesh.nodes.size
@@ -571,7 +560,7 @@ def predict(frame, step, history, fields, clock, mesh, weights, guess, work, sha
         ago += clock[LAST + k]
 
 
-@njit((_V, float64, float64, float64, float64, float64), **_COMPILED)
+@compile_for((_V, float64, float64, float64, float64, float64))
 def _move_clock(clock, step, frame, edge, force, deflection):
     clock[DEFLECTION_EARLIEST], clock[DEFLECTION_EARLIER], clock[DEFLECTION] = (
         clock[DEFLECTION_EARLIER],
@@ -593,7 +582,7 @@ def _move_clock(clock, step, frame, edge, force, deflection):
     clock[BEFORE], clock[LAST] = clock[LAST], step
 
 
-@njit((BACKGROUND, float64, float64, _V, _CONST, _M, _M), **_COMPILED)
+@compile_for((BACKGROUND, float64, float64, _V, _CONST, _M, _M))
 def recall(background, time, frame, retardation, nodes, work, memory):
     """Memory of the background at ``time`` on the nodes of a frame, into rows of ``memory``."""
     modes = background.values.shape[0]
@@ -609,12 +598,11 @@ def recall(background, time, frame, retardation, nodes, work, memory):
             memory[m, i] *= fading
 
 
-@njit(
+@compile_for(
     int64(
         pointer(HEIGHT), pointer(PROFILE), pointer(PRESSURE), PARAMETERS,
         BACKGROUND, MESH, CONTROLS, _M, _V, _M, _M,
     ),
-    **_COMPILED,
 )  # fmt: skip
 def advance(
     height, profile, law, parameters, background, mesh, controls, fields, clock, records, shapes,

@@ -17,13 +17,14 @@ in s.
 Functions called once a step are inlined: to hand over so many arrays takes as long as their work.
 """
 
+from functools import partial
 from math import exp
 from typing import NamedTuple
 
 import numpy as np
-from numba import boolean, float64, int64, njit, types
+from numba import boolean, float64, int64, types
 
-from softafm.compiled import PRESSURE, pointer
+from softafm.compiled import PRESSURE, compile_for, pointer
 from softafm.solvers.dense import (
     factorise,
     factorise_general,
@@ -33,11 +34,11 @@ from softafm.solvers.dense import (
     solve_general,
 )
 
-_FAST = {"reassoc", "contract", "nsz", "arcp"}
 _V = float64[::1]
 _M = float64[:, ::1]
 _CUBE = float64[:, :, ::1]
 _CONST = types.Array(float64, 1, "C", readonly=True)
+_compile_for = partial(compile_for, error_model="python")  # a division by zero is an error
 
 # How the rates are found: at nodes by fixed-point iteration or by a linear solve; for coefficients
 # by least squares over the nodes or by projection on orthogonal functions.
@@ -152,11 +153,9 @@ WORK = types.NamedTuple(
 )  # fmt: skip
 
 
-@njit(
+@_compile_for(
     boolean(SETUP, pointer(PRESSURE), MATERIAL, CONTROLS, float64, _M, WORK),
-    cache=True,
     inline="always",
-    fastmath=_FAST,
 )
 def observe(setup, law, material, controls, height, state, work):
     """Find gap and pressure of a state; False if the tip is in the surface or p beyond bounds."""
@@ -179,7 +178,7 @@ def observe(setup, law, material, controls, height, state, work):
     return work.pressure.max() <= controls.largest_pressure
 
 
-@njit(int64(SETUP, float64, CONTROLS, float64, _V, WORK, int64[::1]), cache=True, fastmath=_FAST)
+@_compile_for(int64(SETUP, float64, CONTROLS, float64, _V, WORK, int64[::1]))
 def _iterate(setup, instantaneous, controls, speed, guess, work, counters):
     """Adjust the guessed rates until equation (10) holds: setup A.
 
@@ -211,10 +210,8 @@ def _iterate(setup, instantaneous, controls, speed, guess, work, counters):
     return NOT_CONVERGED
 
 
-@njit(
+@_compile_for(
     int64(SETUP, MATERIAL, CONTROLS, float64, float64, _M, _M, WORK, int64[::1]),
-    cache=True,
-    fastmath=_FAST,
 )
 def rates(setup, material, controls, height, speed, state, out, work, counters):
     """Rates of the state last observed into ``out``, which holds the guess for an iteration."""
@@ -290,7 +287,7 @@ def rates(setup, material, controls, height, speed, state, out, work, counters):
     return FINISHED
 
 
-@njit(float64(SETUP, pointer(PRESSURE), MATERIAL, WORK), cache=True, fastmath=_FAST)
+@_compile_for(float64(SETUP, pointer(PRESSURE), MATERIAL, WORK))
 def tip_force(setup, law, material, work):
     """Force on the tip, N; leaves gap, pressure and slope beyond the domain in ``work.far``."""
     far, last = setup.far_rise.size, work.gap.size - 1
@@ -305,12 +302,10 @@ def tip_force(setup, law, material, work):
     return total
 
 
-@njit(
+@_compile_for(
     int64(
         SETUP, MATERIAL, CONTROLS, float64, float64, float64, float64, _M, _M, WORK, int64[::1]
     ),
-    cache=True,
-    fastmath=_FAST,
 )  # fmt: skip
 def rates_on_lever(
     setup, material, controls, height, force, base, base_speed, state, out, work, counters
@@ -360,11 +355,9 @@ def rates_on_lever(
     return FINISHED
 
 
-@njit(
+@_compile_for(
     (SETUP, MATERIAL, CONTROLS, float64, float64, WORK, _V),
-    cache=True,
     inline="always",
-    fastmath=_FAST,
 )
 def note(setup, material, controls, height, force, work, record):
     """Write height, force, contact radius, axis deformation and viscous power of a surface with
@@ -400,7 +393,7 @@ def note(setup, material, controls, height, force, work, record):
     record[R_LOSS] = loss
 
 
-@njit((float64, _V, _V, _V, _M), cache=True, fastmath=_FAST)
+@_compile_for((float64, _V, _V, _V, _M))
 def filter_pressure(step, retardation, before, pressure, filtered):
     """Carry w_m, τ_m ẇ_m = p − w_m, over a step in which the pressure is linear in time."""
     for m in range(retardation.size):
@@ -413,13 +406,11 @@ def filter_pressure(step, retardation, before, pressure, filtered):
             )
 
 
-@njit(
+@_compile_for(
     int64(
         SETUP, pointer(PRESSURE), MATERIAL, CONTROLS,
         _CONST, _CONST, int64, _M, _CUBE, WORK, _M, _M, int64[::1],
     ),
-    cache=True,
-    fastmath=_FAST,
 )  # fmt: skip
 def march(
     setup, law, material, controls,
