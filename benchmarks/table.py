@@ -24,9 +24,8 @@ import numpy as np
 
 import softafm as sa
 from softafm.halfspace.mesh import unit_mesh
-from softafm.solvers import energy_kernel as k
-from softafm.solvers import energy_run
 from softafm.solvers.dense import factorise
+from softafm.solvers.energy import run as energy_run
 
 TAP = "ldpe-tap-setpoint-0.8"
 VIRIAL_AND_LOSS = ("virial", "dissipation")
@@ -223,9 +222,9 @@ class Counted(energy_run.Run):
     def _advance(self, stop):
         surface = self.surface
         size = surface.mesh.nodes.size + bool(surface.parameters.lever[0])
-        before = surface.clock[k.NEWTONS]
+        before = surface.clock["newtons"]
         outcome, records, shapes = super()._advance(stop)
-        done = surface.clock[k.NEWTONS] - before, len(records)
+        done = surface.clock["newtons"] - before, len(records)
         self.tallies[size] = self.tallies.get(size, np.zeros(2)) + done
         return outcome, records, shapes
 

@@ -23,7 +23,7 @@ PATIENCE = 120  # s: for a machine that compiles first, or is busy
 @pytest.fixture(scope="session", autouse=True)
 def compiled_solvers():
     with announced_compilation("tests"):
-        import softafm.solvers.energy_run
+        import softafm.solvers.energy.run
         import softafm.solvers.explicit_run
 
     return softafm.solvers

@@ -337,13 +337,13 @@ def test_a_nonlinear_feedback_is_found():
     ],
 )
 def test_cycles_that_scatter_are_not_steady_by_chance(misses, scatter):
-    from softafm.solvers.energy_run import _scatter
+    from softafm.solvers.energy.run import _scatter
 
     assert _scatter(misses) == pytest.approx(scatter)
 
 
 def test_cycles_that_find_no_steady_state_are_warned_of(monkeypatch):
-    from softafm.solvers import energy_run
+    from softafm.solvers.energy import run as energy_run
 
     monkeypatch.setattr(energy_run, "_MOST_CYCLES", 2)
     contact = sa.Contact(

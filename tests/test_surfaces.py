@@ -14,7 +14,7 @@ from scipy.integrate import quad
 
 import softafm as sa
 from softafm import surfaces
-from softafm.solvers.energy_surface import gap_origin
+from softafm.solvers.energy.surface import gap_origin
 from softafm.surface_drawing import plot_surface
 
 W, Z0 = 0.05, 3e-10

@@ -27,6 +27,8 @@ _OPTIONS: dict[str, Any] = {
     # Loops that might raise ZeroDivisionError are not vectorised.
     "error_model": "numpy",
 }
+_NO_MEMORY: dict[str, Any] = {"_nrt": False}
+"""Of loops that take no memory, and so need not count the references to that of their arrays."""
 
 PRESSURE = void(_ARRAY, _ARRAY, _ARRAY, _ARRAY, int64)
 """``(gap, parameters, pressure, slope, n)``: p and dp/dh of the first n gaps, in Pa and Pa/m.
@@ -62,13 +64,21 @@ def compile_for(signature: Any, **options: Any) -> Callable[[Callable], Any]:
     def compile_now(function: Callable) -> Any:
         if not code_store.is_ours(function.__code__.co_filename):
             raise RuntimeError(f"{function.__code__.co_filename} is not in code_store.ROOMS")
-        dispatcher = njit(**(_OPTIONS | options))(function)
+        dispatcher = njit(**(_OPTIONS | _NO_MEMORY | options))(function)
         dispatcher._cache = _Store(function)
         dispatcher.compile(signature)
         dispatcher.disable_compile()
         return dispatcher
 
     return compile_now
+
+
+def inlined(function: Callable) -> Any:
+    """Decorate a function that is written into the compiled loops which call it.
+
+    To hand over many arrays would take as long as its work.
+    """
+    return njit(inline="always", **_OPTIONS, **_NO_MEMORY)(function)
 
 
 class _Store(_Cache):

@@ -38,7 +38,8 @@ _V = float64[::1]
 _M = float64[:, ::1]
 _CUBE = float64[:, :, ::1]
 _CONST = types.Array(float64, 1, "C", readonly=True)
-_compile_for = partial(compile_for, error_model="python")  # a division by zero is an error
+_compile_for = partial(compile_for, error_model="python", _nrt=True)
+"""Here divisions by zero are errors, and NumPy's functions take memory."""
 
 # How the rates are found: at nodes by fixed-point iteration or by a linear solve; for coefficients
 # by least squares over the nodes or by projection on orthogonal functions.

@@ -6,7 +6,23 @@ import numpy as np
 
 from softafm.errors import DivergedError
 from softafm.halfspace.mesh import unit_mesh
-from softafm.solvers import energy_kernel as k
+from softafm.solvers.energy.equilibrium import descend, raise_tip, tip_force
+from softafm.solvers.energy.frame import frame_for, radius_of_gap, transfer
+from softafm.solvers.energy.layout import (
+    DEFORMATION,
+    LOAD,
+    MEMORY,
+    ORIGIN,
+    RECORD_FIELDS,
+    Background,
+    Mesh,
+    Parameters,
+    Room,
+    new_clock,
+    new_room,
+)
+from softafm.solvers.energy.memory import recall
+from softafm.solvers.energy.tuning import CLOSEST
 
 EXTENT = 8.0
 """Radius of every mesh, in contact radii."""
@@ -33,7 +49,7 @@ class Surface:
         profile, tip_parameters = contact.tip.compiled_profile
         law, potential, law_parameters = contact.surface.compiled_pressure
         self.functions = height, profile, law, potential
-        self.parameters = k.Parameters(
+        self.parameters = Parameters(
             height_parameters,
             tip_parameters,
             law_parameters,
@@ -42,7 +58,7 @@ class Surface:
             np.array([stiffness, 0.0]),
         )
         origin = gap_origin(contact)
-        law_parameters[k.ORIGIN] = origin
+        law_parameters[ORIGIN] = origin
         self.edge_gap = contact.edge_gap - origin
         # Where the cohesive zone ends: of a Lennard-Jones law the gap is twice that at the edge.
         opens = 3 ** (1 / 6) * contact.reach if contact.adhesive else self.edge_gap
@@ -62,17 +78,18 @@ class Surface:
         self.finest_spacing, self.finest_used = self.mesh.edge_spacing, self.level
         self.archive = self.mesh, 0.0
         modes = self.parameters.retardation.size
-        self.fields = np.zeros((k.MEMORY + modes, self.mesh.nodes.size))
-        self.clock = np.zeros(k.CLOCK_SIZE)
-        self.clock[k.TIME] = breaks[0]
-        self.clock[k.CONTRACTION] = 0.0 if slack < 2 else np.inf
+        self._room = new_room(self.mesh.nodes.size, self.mesh.far.size, modes)
+        self.fields = np.zeros((MEMORY + modes, self.mesh.nodes.size))
+        self.clock = new_clock()
+        self.clock["time"] = breaks[0]
+        self.clock["contraction"] = 0.0 if slack < 2 else np.inf
         first = contact.contact_radius(float(motion.height(breaks[0])))
-        self.clock[k.FRAME] = k.frame_for(first, self.open_frame)
-        self.background = k.Background(np.empty((0, 0)), 1.0, 1.0, 1.0, 1.0, 0.0)
-        self.clock[k.FORCE_SCALE] = contact.force_scale
+        self.clock["frame"] = frame_for(first, self.open_frame)
+        self.background = Background(np.empty((0, 0)), 1.0, 1.0, 1.0, 1.0, 0.0)
+        self.clock["force_scale"] = contact.force_scale
 
-    def _mesh(self, level: int) -> k.Mesh:
-        return k.Mesh(*unit_mesh(_COARSEST_SPACING * 2.0**-level, self.growth, EXTENT))
+    def _mesh(self, level: int) -> Mesh:
+        return Mesh(*unit_mesh(_COARSEST_SPACING * 2.0**-level, self.growth, EXTENT))
 
     def _level_for(self, spacing: float) -> int:
         """Level of the mesh whose edge spacing, in contact radii, is at most this."""
@@ -82,7 +99,14 @@ class Surface:
     @property
     def time(self) -> float:
         """The instant, s."""
-        return float(self.clock[k.TIME])
+        return float(self.clock["time"])
+
+    def room(self) -> Room:
+        """Return memory for the compiled loops to work in."""
+        nodes, far, modes = self.mesh.nodes.size, self.mesh.far.size, len(self.fields) - MEMORY
+        if self._room.fields.shape != (10 + 4 * modes, nodes) or self._room.far.shape[1] != far:
+            self._room = new_room(nodes, far, modes)
+        return self._room
 
     @property
     def coarseness_allowed(self) -> tuple[float, float]:
@@ -111,109 +135,108 @@ class Surface:
         """
         clock = self.clock
         if self.archive[1] == 0:
-            self.archive = self._mesh(self.finest_used), float(clock[k.FRAME])
+            self.archive = self._mesh(self.finest_used), float(clock["frame"])
         archive, frame = self.archive
-        gained = self._carried(self.fields[k.MEMORY :], archive, frame / clock[k.FRAME])
-        if clock[k.EDGE] == 0:
+        gained = self._carried(self.fields[MEMORY:], archive, frame / clock["frame"])
+        if clock["edge"] == 0:
             self.level = self.first_level
             mesh = self._mesh(self.level)
-            self.fields = self._carried(self.fields, mesh, self.open_frame / clock[k.FRAME])
-            self.mesh, clock[k.FRAME] = mesh, self.open_frame
-        self.fields[k.MEMORY :] = 0
-        clock[k.TIME] = time
+            self.fields = self._carried(self.fields, mesh, self.open_frame / clock["frame"])
+            self.mesh, clock["frame"] = mesh, self.open_frame
+        self.fields[MEMORY:] = 0
+        clock["time"] = time
         return gained
 
     def remember(self, memory) -> None:
         """Take ``memory``, as ``rewind`` returned it, for that of all that was before now."""
         mesh, frame = self.archive
-        self.background = k.Background(
+        self.background = Background(
             memory, frame, mesh.nodes[-1], mesh.edge_spacing, mesh.growth, self.time
         )
 
     def memory(self) -> np.ndarray:
         """Return the memory fields now, (modes, n) in Pa·m."""
         memory = np.zeros((self.parameters.retardation.size, self.mesh.nodes.size))
-        k.recall(
-            self.background, self.time, self.clock[k.FRAME], self.parameters.retardation,
+        recall(
+            self.background, self.time, self.clock["frame"], self.parameters.retardation,
             self.mesh.nodes, np.empty((7, self.mesh.nodes.size)), memory,
         )  # fmt: skip
-        return memory + self.fields[k.MEMORY :]
+        return memory + self.fields[MEMORY:]
 
-    def _carried(self, fields, mesh: k.Mesh, stretch: float) -> np.ndarray:
+    def _carried(self, fields, mesh: Mesh, stretch: float) -> np.ndarray:
         """Return fields (m, n) on another mesh, in a frame ``stretch`` times larger."""
         old, n = self.mesh, mesh.nodes.size
         result = np.empty((len(fields), n))
-        k.transfer(
+        transfer(
             fields, old.nodes[-1], old.edge_spacing, old.growth, stretch, mesh.nodes,
             np.empty((7, n)), result,
         )  # fmt: skip
         return result
 
     def settle(self) -> np.ndarray:
-        """Equilibrate at frozen memory and return the state as a record."""
+        """Equilibrate at frozen memory and return the state as a record, in an array of one."""
         mesh, clock = self.mesh, self.clock
         height, profile, law, potential = self.functions
-        n, frame = mesh.nodes.size, clock[k.FRAME]
+        n, frame = mesh.nodes.size, clock["frame"]
         tip, pressure, scratch = np.empty(n), np.empty(n), np.empty(n)
         rise, far_work = np.empty(mesh.far.size), np.empty((3, mesh.far.size))
-        k.raise_tip(profile, self.parameters.tip, mesh, frame, scratch, tip, rise)
+        raise_tip(profile, self.parameters.tip, mesh, frame, scratch, tip, rise)
         h0 = height(self.time, self.parameters.height)
-        base = h0 - self.parameters.law[k.ORIGIN] + tip
+        base = h0 - self.parameters.law[ORIGIN] + tip
         memory = self.memory()
         instantaneous, modes = self.parameters.compliance[0], self.parameters.compliance[1:]
         v = -modes @ memory
-        standoff = base + clock[k.DEFLECTION]
-        shape = self.fields[k.DEFORMATION]
+        standoff = base + clock["deflection"]
+        shape = self.fields[DEFORMATION]
         # A tip that starts inside the surface pushes it away.
-        pierced = standoff - shape < k.CLOSEST * self.edge_gap
+        pierced = standoff - shape < CLOSEST * self.edge_gap
         shape = np.where(pierced, standoff - self.edge_gap, shape)
-        unknowns = np.append(shape, clock[k.DEFLECTION])
+        unknowns = np.append(shape, clock["deflection"])
         lever = self.parameters.lever[0] / (2 * np.pi * frame**2)
-        iterations = k.settle(
+        iterations = descend(
             unknowns, v, frame * instantaneous, base, lever, rise, mesh,
-            law, potential, self.parameters.law, self.accuracy,
+            law, potential, self.parameters.law, self.accuracy, self.room(),
         )  # fmt: skip
         if iterations < 0:
             raise DivergedError(f"no stable surface found at height {h0:g} m")
-        u, clock[k.DEFLECTION] = unknowns[:-1], unknowns[-1]
-        self.fields[k.DEFORMATION] = u
-        self.fields[k.LOAD] = (v - u) / instantaneous
-        gap = base + clock[k.DEFLECTION] - u
+        u, clock["deflection"] = unknowns[:-1], unknowns[-1]
+        self.fields[DEFORMATION] = u
+        self.fields[LOAD] = (v - u) / instantaneous
+        gap = base + clock["deflection"] - u
         law(gap, self.parameters.law, pressure, scratch, n)
-        force = k.tip_force(pressure, gap, rise, mesh, frame, law, self.parameters.law, far_work)
-        edge = frame * k.radius_of_gap(gap, mesh.nodes, self.edge_gap)
-        zone = frame * k.radius_of_gap(gap, mesh.nodes, self.open_gap) - edge
-        lag = self.fields[k.LOAD] - memory
+        force = tip_force(pressure, gap, rise, mesh, frame, law, self.parameters.law, far_work)
+        edge = frame * radius_of_gap(gap, mesh.nodes, self.edge_gap)
+        zone = frame * radius_of_gap(gap, mesh.nodes, self.open_gap) - edge
+        lag = self.fields[LOAD] - memory
         rates = modes / self.parameters.retardation
-        clock[k.FRAME_EARLIER] = clock[k.FRAME_EARLIEST] = frame
-        clock[k.EDGE], clock[k.AXIS_GAP], clock[k.FORCE] = edge, gap[0], force
-        clock[k.FORCE_SCALE] = max(clock[k.FORCE_SCALE], abs(force))
-        clock[k.HISTORY] = 1
-        record = np.zeros(k.RECORD_WIDTH)
-        record[k.R_TIME], record[k.R_FORCE] = self.time, force
-        record[k.R_HEIGHT] = h0 + clock[k.DEFLECTION]
-        record[k.R_EDGE], record[k.R_AXIS], record[k.R_FRAME] = edge, u[0], frame
-        record[k.R_LOSS] = 2 * np.pi * frame * rates @ np.sum((lag @ mesh.stiffness) * lag, axis=1)
+        clock["frame_earlier"] = clock["frame_earliest"] = frame
+        clock["edge"], clock["axis_gap"], clock["force"] = edge, gap[0], force
+        clock["force_scale"] = max(clock["force_scale"], abs(force))
+        clock["history"] = 1
+        records = np.zeros(1, RECORD_FIELDS)
+        record = records[0]
+        record["time"], record["force"] = self.time, force
+        record["height"] = h0 + clock["deflection"]
+        record["edge"], record["axis"], record["frame"] = edge, u[0], frame
+        record["loss"] = 2 * np.pi * frame * rates @ np.sum((lag @ mesh.stiffness) * lag, axis=1)
         spacing = frame * mesh.edge_spacing
-        record[k.R_COARSENESS] = spacing / max(zone, 1e-9 * frame) if edge else 0.0
-        return record
+        record["coarseness"] = spacing / max(zone, 1e-9 * frame) if edge else 0.0
+        return records
 
     def energy(self) -> float:
         """Energy of the contact as an instantaneous elastic one, to infinity, and the lever, J."""
-        mesh, frame, deflection = self.mesh, self.clock[k.FRAME], self.clock[k.DEFLECTION]
+        mesh, frame, deflection = self.mesh, self.clock["frame"], self.clock["deflection"]
         h0 = self.functions[0](self.time, self.parameters.height) + deflection
-        load = self.fields[k.LOAD]
+        load = self.fields[LOAD]
         elastic = np.pi * frame * self.parameters.compliance[0] * (load @ mesh.stiffness @ load)
 
         def density(radius, deformation):
-            gap = (
-                h0 + self.contact.tip.profile(radius) - deformation - self.parameters.law[k.ORIGIN]
-            )
+            gap = h0 + self.contact.tip.profile(radius) - deformation - self.parameters.law[ORIGIN]
             found = np.empty(gap.size)
             self.functions[3](gap, self.parameters.law, found, gap.size)
             return found
 
-        near = frame**2 * mesh.masses @ density(frame * mesh.nodes, self.fields[k.DEFORMATION])
+        near = frame**2 * mesh.masses @ density(frame * mesh.nodes, self.fields[DEFORMATION])
         end = frame * mesh.nodes[-1]
         r = 2 * end / (1 + _POINTS)
         beyond = np.sum(_WEIGHTS * density(r, 0.0) * r**3 / (2 * end))
@@ -237,6 +260,6 @@ def gap_origin(contact) -> float:
     else:
         origin = edge - 20 * contact.reach
     hardest = 1 / contact.sample.reduced_compliance.instantaneous
-    while law.overlaps and law.pressure(origin + k.CLOSEST * (edge - origin)) < hardest:
+    while law.overlaps and law.pressure(origin + CLOSEST * (edge - origin)) < hardest:
         origin -= 0.2 * (edge - origin)
     return max(origin, law.closest_gap)

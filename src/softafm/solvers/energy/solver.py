@@ -74,7 +74,7 @@ class Energy:
         """
         started = perf_counter()
         with announced_compilation(self.kind):
-            from softafm.solvers.energy_run import Run
+            from softafm.solvers.energy.run import Run
 
             run = Run(self, contact, motion, stiffness or 0.0, tolerance, profiles)
         for fraction in run.cycles() if getattr(motion, "steady", False) else run.steps():

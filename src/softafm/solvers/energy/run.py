@@ -8,8 +8,20 @@ import numpy as np
 
 from softafm.errors import DivergedError
 from softafm.kernels import still
-from softafm.solvers import energy_kernel as k
-from softafm.solvers.energy_surface import Surface
+from softafm.solvers.energy.layout import (
+    DEFORMATION,
+    FALL,
+    FINISHED,
+    FULL,
+    LOAD,
+    RECORD_FIELDS,
+    REMESH,
+    STUCK,
+    TRIGGERED,
+    Controls,
+)
+from softafm.solvers.energy.step import advance
+from softafm.solvers.energy.surface import Surface
 from softafm.solvers.history import History
 from softafm.solvers.periodic import PeriodicMemory
 from softafm.solvers.shapes import Shape, on_common_radii
@@ -33,7 +45,7 @@ class Run:
         self.surface = Surface(contact, motion, stiffness, self.strictness, solver.finest_spacing)
         gap = self.surface.edge_gap
         fastest = min([gap / motion.top_speed, *self.surface.parameters.retardation])
-        self.controls = k.Controls(
+        self.controls = Controls(
             end=0.0,
             shortest_step=1e-4 * self.strictness * fastest,
             longest_step=0.0,
@@ -52,7 +64,7 @@ class Run:
             trigger=np.inf,
         )
         self.target = self.surface.target
-        self.records = np.empty((_CHUNK, k.RECORD_WIDTH))
+        self.records = np.empty(_CHUNK, RECORD_FIELDS)
         self.chunks: list[np.ndarray] = []
         self.shapes: list[Shape] | None = [] if keep_shapes else None
         self.coarsest = 0.0, 0.0
@@ -65,11 +77,11 @@ class Run:
     def steps(self) -> Iterator[float]:
         """Run, yielding the fraction of the motion done at every return of the compiled loop."""
         surface = self.surface
-        self._keep(surface.settle()[None], surface.fields[k.DEFORMATION][None])
-        if surface.clock[k.FORCE] >= self._trigger(-np.inf):
+        self._keep(surface.settle(), surface.fields[DEFORMATION][None])
+        if surface.clock["force"] >= self._trigger(-np.inf):
             raise ValueError(
                 f"setpoint_force = {self.motion.setpoint_force:g} N: must be above the force at "
-                f"the start, {surface.clock[k.FORCE]:.3g} N"
+                f"the start, {surface.clock['force']:.3g} N"
             )
         first = surface.time
         while (stop := self._next_stop()) is not None:
@@ -81,21 +93,21 @@ class Run:
             self.controls = self.controls._replace(
                 longest_step=longest, trigger=self._trigger(stop)
             )
-            outcome = k.FULL
-            while outcome not in (k.FINISHED, k.TRIGGERED):
+            outcome = FULL
+            while outcome not in (FINISHED, TRIGGERED):
                 outcome, records, shapes = self._advance(stop)
                 self._keep(records, shapes)
-                if outcome == k.STUCK:
+                if outcome == STUCK:
                     raise DivergedError(
-                        f"stopped at t = {surface.time:g} s after {surface.clock[k.TRIES]:.0f} "
+                        f"stopped at t = {surface.time:g} s after {surface.clock['tries']:.0f} "
                         f"attempted steps (most_steps = {self.solver.most_steps}){self._softer()}",
                         self.history(0.0),
                     )
-                if outcome == k.REMESH:
-                    surface.remesh(records[-1, k.R_COARSENESS])
-                if outcome == k.FALL:
+                if outcome == REMESH:
+                    surface.remesh(records[-1]["coarseness"])
+                if outcome == FALL:
                     self._fall(stop)
-                if outcome == k.TRIGGERED:
+                if outcome == TRIGGERED:
                     self._turn()
                 yield (surface.time - first) / (self.breaks[-1] - first)
 
@@ -109,7 +121,7 @@ class Run:
         period = self.breaks[-1] - start
         periodic = PeriodicMemory(period, modes, times, surface.edge_gap)
         if times.max(initial=0) > period:  # small errors of a cycle add up
-            surface.clock[k.CONTRACTION] = np.inf
+            surface.clock["contraction"] = np.inf
         memory, misses = None, []
         for self.cycle in range(1, _MOST_CYCLES + 1):
             self.chunks.clear()
@@ -149,14 +161,14 @@ class Run:
         height, parameters = self.motion.compiled_height
         surface.functions = (height, *surface.functions[1:])
         surface.parameters = surface.parameters._replace(height=parameters)
-        surface.clock[k.TIME] = self.breaks[1]
-        self.chunks[-1][-1, k.R_TIME] = surface.time
+        surface.clock["time"] = self.breaks[1]
+        self.chunks[-1][-1]["time"] = surface.time
 
     def _begin_piece(self, stop):
         """Forget the past shapes: beyond a break of the motion they do not extrapolate."""
         clock = self.surface.clock
-        clock[k.HISTORY] = 1
-        clock[k.STEP] = 0.1 * clock[k.LAST] or 0.005 * (stop - self.surface.time)
+        clock["history"] = 1
+        clock["step"] = 0.1 * clock["taken"] or 0.005 * (stop - self.surface.time)
 
     def _advance(self, stop):
         """Call the compiled loop once; return its outcome, records and shapes."""
@@ -164,17 +176,16 @@ class Run:
         finest, coarsest = surface.coarseness_allowed
         controls = self.controls._replace(end=float(stop), finest=finest, coarsest=coarsest)
         shapes = np.empty((0 if self.shapes is None else _CHUNK, surface.mesh.nodes.size))
-        outcome = k.advance(
+        outcome, count = advance(
             *surface.functions[:3], surface.parameters, surface.background, surface.mesh, controls,
-            surface.fields, surface.clock, self.records, shapes,
+            surface.fields, surface.clock, self.records, shapes, surface.room(),
         )  # fmt: skip
-        count = int(self.records[0, 0])
-        return outcome, self.records[1:count], shapes[1:count]
+        return outcome, self.records[:count], shapes[:count]
 
     def _fall(self, stop):
         """Pass a short step where no stable shape is near, and note a jump if it is one."""
         surface, clock = self.surface, self.surface.clock
-        start, gap, edge = surface.time, clock[k.AXIS_GAP], clock[k.EDGE]
+        start, gap, edge = surface.time, clock["axis_gap"], clock["edge"]
         before = surface.energy()
         # A slack contact may slip from node to node: pass such a stretch in growing steps.
         self.slips = min(self.slips + 1, 8) if start < self.end_of_slip else 0
@@ -182,15 +193,15 @@ class Run:
         end = stop if duration == stop - start else start + duration
         self.end_of_slip = start + 20 * duration
         self._creep_down(end, duration)
-        clock[k.TIME], clock[k.STEP] = end, 10 * self.controls.shortest_step
+        clock["time"], clock["step"] = end, 10 * self.controls.shortest_step
         record = surface.settle()
         self.falls.append(surface.time)
-        if abs(clock[k.AXIS_GAP] - gap) > 0.1 * gap or abs(clock[k.EDGE] - edge) > 0.05 * edge:
-            record[k.R_JUMP] = before - surface.energy()
+        if abs(clock["axis_gap"] - gap) > 0.1 * gap or abs(clock["edge"] - edge) > 0.05 * edge:
+            record["jump"] = before - surface.energy()
         else:
             # No fall but a slip: the edge is caught by nodes too far apart for a contact so slack.
             surface.target = max(surface.target / 2, 0.02)
-        self._keep(record[None], surface.fields[k.DEFORMATION][None])
+        self._keep(record, surface.fields[DEFORMATION][None])
 
     def _creep_down(self, time, duration):
         """Follow a fall, ``duration`` long and under the tip height of ``time``, as a fast creep.
@@ -212,7 +223,7 @@ class Run:
         surface.functions = (still, *functions[1:])
         # The clock of the fall starts at 0; the past goes on fading from where it is.
         surface.background = background._replace(since=background.since - time)
-        surface.fields = np.vstack([surface.fields, surface.fields[k.LOAD]])
+        surface.fields = np.vstack([surface.fields, surface.fields[LOAD]])
         for patience in range(8):
             creep_time = 10.0 ** (-4 - patience) * duration
             surface.parameters = parameters._replace(
@@ -224,19 +235,19 @@ class Run:
             self.controls = controls._replace(
                 shortest_step=1e-9 * creep_time, longest_step=duration, top_speed=1e-300,
                 prediction=0.2, memory=0.2, force=1.0, trigger=np.inf,
-                most_tries=min(controls.most_tries, clock[k.TRIES] + _MOST_TRIES_IN_A_FALL),
+                most_tries=min(controls.most_tries, clock["tries"] + _MOST_TRIES_IN_A_FALL),
             )  # fmt: skip
-            clock[k.TIME], clock[k.STEP], clock[k.HISTORY] = 0.0, 1e-3 * creep_time, 1
-            outcome = k.FULL
-            while outcome in (k.FULL, k.REMESH):
+            clock["time"], clock["step"], clock["history"] = 0.0, 1e-3 * creep_time, 1
+            outcome = FULL
+            while outcome in (FULL, REMESH):
                 outcome, records, _ = self._advance(duration)
-                if outcome == k.REMESH:
-                    surface.remesh(records[-1, k.R_COARSENESS])
-            behind = delayed * np.abs(surface.fields[k.LOAD] - surface.fields[-1]).max()
+                if outcome == REMESH:
+                    surface.remesh(records[-1]["coarseness"])
+            behind = delayed * np.abs(surface.fields[LOAD] - surface.fields[-1]).max()
             if parameters.lever[0] > 0:
-                unbalanced = clock[k.FORCE] / parameters.lever[0] - clock[k.DEFLECTION]
+                unbalanced = clock["force"] / parameters.lever[0] - clock["deflection"]
                 behind = max(behind, abs(unbalanced))
-            if outcome != k.FINISHED or behind < 1e-4 * surface.edge_gap:
+            if outcome != FINISHED or behind < 1e-4 * surface.edge_gap:
                 break
         surface.functions, surface.parameters, self.controls = functions, parameters, controls
         surface.background = background
@@ -248,17 +259,17 @@ class Run:
         self.chunks.append(records.copy())
         if self.shapes is not None:
             for record, shape in zip(records, shapes, strict=True):
-                self.shapes.append(Shape(record[k.R_FRAME], surface.mesh, shape.copy()))
+                self.shapes.append(Shape(record["frame"], surface.mesh, shape.copy()))
         if surface.level == surface.finest_level and len(records):
-            worst = records[records[:, k.R_COARSENESS].argmax()]
-            found = float(worst[k.R_COARSENESS]), float(worst[k.R_EDGE])
+            worst = records[records["coarseness"].argmax()]
+            found = float(worst["coarseness"]), float(worst["edge"])
             self.coarsest = max(self.coarsest, found)
 
     def history(self, seconds: float) -> History:
         """Collect what was recorded; ``seconds`` is the time the run took."""
         surface = self.surface
-        records = np.concatenate(self.chunks)
-        time, jumped = records[:, k.R_TIME], records[:, k.R_JUMP] != 0
+        records = _join(self.chunks)
+        time, jumped = records["time"], records["jump"] != 0
         breaks = np.flatnonzero(np.isin(time, self.breaks[1:-1]))
         fallen = np.flatnonzero(np.isin(time, self.falls))
         cuts = sorted([(i, i + 1) for i in breaks] + [(i, i) for i in fallen])
@@ -266,20 +277,20 @@ class Run:
         ends = [end for _, end in cuts] + [time.size]
         return History(
             time=time,
-            tip_height=records[:, k.R_HEIGHT],
-            force=records[:, k.R_FORCE],
-            contact_radius=records[:, k.R_EDGE],
-            axis_deformation=records[:, k.R_AXIS],
-            viscous_power=records[:, k.R_LOSS],
+            tip_height=records["height"],
+            force=records["force"],
+            contact_radius=records["edge"],
+            axis_deformation=records["axis"],
+            viscous_power=records["loss"],
             pieces=tuple(slice(int(a), int(b)) for a, b in zip(starts, ends, strict=True)),
             motion=self.motion,
             jump_time=time[jumped],
-            jump_energy=records[jumped, k.R_JUMP],
+            jump_energy=records["jump"][jumped],
             profiles=None if self.shapes is None else on_common_radii(self.shapes),
             diagnostics={
                 "steps": time.size - 1,
-                "attempted_steps": int(surface.clock[k.TRIES]),
-                "newton_iterations": int(surface.clock[k.NEWTONS]),
+                "attempted_steps": int(surface.clock["tries"]),
+                "newton_iterations": int(surface.clock["newtons"]),
                 "meshes": surface.meshes,
                 "most_nodes": surface.most_nodes,
                 "finest_spacing": surface.finest_spacing,
@@ -349,6 +360,16 @@ class Run:
             f" as that of a Lennard-Jones law of its range; beyond {_SHARPEST:g} times the contact "
             "edge may catch on the nodes, and forces be off by several per cent. Smooth the law",
         )
+
+
+def _join(chunks: list[np.ndarray]) -> np.ndarray:
+    """Concatenate arrays of records: NumPy would compare their types one by one."""
+    records = np.empty(sum(chunk.size for chunk in chunks), RECORD_FIELDS)
+    at = 0
+    for chunk in chunks:
+        records[at : at + chunk.size] = chunk
+        at += chunk.size
+    return records
 
 
 def _stagnates(misses: list[float]) -> bool:

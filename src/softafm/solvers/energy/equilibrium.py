@@ -1,0 +1,244 @@
+"""Equilibrium of the energy solver: stable shapes of the surface, and the force on the tip.
+
+With the stiffness S = G⁻¹ and masses m of the unit mesh, u = v − c K p reads
+S (u − v)/(a c) + m p(h) = 0: the stationarity of
+
+    Π/(2πa²) = (u − v)ᵀ S (u − v)/(2 a c) + Σ m_i Φ(h_i),     h = h0 + g − u.
+
+A tip on a lever of stiffness k adds its deflection q to h0 and k q²/2 to the energy: one unknown
+more, solved for together with the surface. Where q is listed with u it stands in u[n].
+"""
+
+from math import inf, pi
+
+from numba import float64, int64
+
+from softafm.compiled import POTENTIAL, PRESSURE, PROFILE, compile_for, pointer
+from softafm.solvers.dense import factorise, multiply, solve_factorised
+from softafm.solvers.energy.layout import CLOCK, MATRIX, MESH, ROOM, VECTOR
+from softafm.solvers.energy.tuning import (
+    FARTHEST_GUESS,
+    FORGOTTEN,
+    LARGEST_DESCENT,
+    MOST_DESCENTS,
+    MOST_ITERATIONS,
+    SUFFICIENT,
+    TRUSTED,
+)
+
+
+@compile_for((MESH, float64, VECTOR, float64, float64, MATRIX))
+def _assemble(mesh, scale, slope, shift, lever, hessian):
+    """Upper triangle of S·scale − diag(m (p' − shift)), bordered by a lever's row if it has one.
+
+    ``lever`` is its stiffness in units of Π/q², 0 for a rigid one.
+    """
+    n = mesh.nodes.size
+    total = lever
+    stiffness = mesh.stiffness
+    for i in range(n):
+        for j in range(n):
+            hessian[i, j] = stiffness[i, j] * scale
+        curvature = mesh.masses[i] * slope[i]
+        hessian[i, i] += mesh.masses[i] * shift - curvature
+        hessian[i, n] = curvature
+        total -= curvature
+    hessian[n, n] = total + shift
+
+
+@compile_for((float64, VECTOR, MESH, pointer(PRESSURE), VECTOR, MATRIX))
+def beyond_mesh(gap, rise, mesh, law, parameters, work):
+    """Force that acts beyond the last node and minus its derivative with the gap, both over 2πa².
+
+    ``gap`` is that at the last node. There the surface counts as flat, and the gap grows by
+    ``rise`` (far,), as the tip does. ``work`` has three rows.
+    """
+    n = rise.size
+    for i in range(n):
+        work[0, i] = gap + rise[i]
+    law(work[0], parameters, work[1], work[2], n)
+    force, stiffness = 0.0, 0.0
+    for i in range(n):
+        force += mesh.far_masses[i] * work[1, i]
+        stiffness -= mesh.far_masses[i] * work[2, i]
+    return force, stiffness
+
+
+@compile_for(
+    int64(
+        VECTOR, VECTOR, float64, VECTOR, float64, float64, VECTOR,
+        MESH, pointer(PRESSURE), VECTOR, float64, float64, CLOCK, MATRIX, MATRIX, MATRIX,
+    ),
+)  # fmt: skip
+def equilibrate(
+    u, v, ac, standoff, lever, rest, rise,
+    mesh, law, parameters, smallest_gap, accuracy, clock, hessian, work, far_work,
+):  # fmt: skip
+    """Newton's method for u = v − c K p(standoff + q − u) from a good guess, in place.
+
+    ``ac`` is frame radius times compliance, ``standoff`` the gap to the flat surface of an unbent
+    lever. Its deflection q balances ``lever``·(q − ``rest``) against the force, of which some acts
+    beyond the mesh (see ``beyond_mesh``); ``lever`` 0 holds q still. Leaves the gap and the
+    pressure in rows 0 and 1 of ``work``. Returns the iterations, negative if no stable shape was
+    near the guess (an indefinite Hessian, or no convergence).
+    """
+    n = standoff.size
+    size = n + 1 if lever > 0.0 else n
+    gap, pressure, slope, change = work[0, :n], work[1, :n], work[2, :n], work[3]
+    scale = 1.0 / ac
+    for i in range(n):
+        gap[i] = standoff[i] + u[n] - u[i]
+        if not gap[i] > smallest_gap:
+            return -1
+    previous = FARTHEST_GUESS
+    for iteration in range(1, MOST_ITERATIONS + 1):
+        law(gap, parameters, pressure, slope, n)
+        for i in range(n):
+            u[i] -= v[i]
+        multiply(mesh.stiffness, u[:n], change[:n])
+        change[n] = 0.0
+        for i in range(n):
+            u[i] += v[i]
+            push = mesh.masses[i] * pressure[i]
+            change[i] = -(change[i] * scale + push)
+            change[n] += push
+        border = lever
+        if size > n:
+            tail, draw = beyond_mesh(gap[n - 1], rise, mesh, law, parameters, far_work)
+            change[n] += tail - lever * (u[n] - rest)
+            border += draw
+        _assemble(mesh, scale, slope, 0.0, border, hessian)
+        if not factorise(hessian, size):
+            return -iteration
+        solve_factorised(hessian, change, size)
+        if size == n:
+            change[n] = 0.0
+        largest = 0.0
+        for i in range(n):
+            largest = max(largest, abs(change[i] - change[n]) / gap[i])
+        if not largest < previous:
+            return -iteration
+        u[n] += change[n]
+        for i in range(n):
+            u[i] += change[i]
+            gap[i] = standoff[i] + u[n] - u[i]
+        for i in range(n):
+            pressure[i] += slope[i] * (change[n] - change[i])
+        if iteration == 2 and clock.contraction < inf:
+            clock.contraction = largest / (previous * previous)
+        if largest < accuracy:
+            return iteration
+        if iteration == 1 and 0.0 < clock.contraction * largest * largest < TRUSTED * accuracy:
+            law(gap, parameters, change, slope, n)
+            missed, whole = 0.0, 0.0
+            for i in range(n):
+                missed += mesh.masses[i] * abs(change[i] - pressure[i])
+                whole += mesh.masses[i] * abs(change[i])
+            if missed < TRUSTED * accuracy * whole:
+                clock.contraction *= FORGOTTEN
+                return 1
+        previous = largest
+    return -MOST_ITERATIONS
+
+
+@compile_for(
+    int64(
+        VECTOR, VECTOR, float64, VECTOR, float64, VECTOR,
+        MESH, pointer(PRESSURE), pointer(POTENTIAL), VECTOR, float64, ROOM,
+    ),
+)  # fmt: skip
+def descend(u, v, ac, standoff, lever, rise, mesh, law, potential, parameters, accuracy, room):
+    """Descend in energy from ``u``, in place, to a stable shape of u = v − c K p(standoff + q − u).
+
+    Newton's method on Π, its Hessian shifted until it is positive and no gap changes by more than
+    ``LARGEST_DESCENT``, each step shortened until Π falls. Arguments as of ``equilibrate``, and a
+    ``room`` to work in. Returns the iterations, or -1 if ``MOST_DESCENTS`` do not suffice.
+    """
+    n = standoff.size
+    size = n + 1 if lever > 0.0 else n
+    rows, hessian, far_work = room.rows, room.hessian, room.far[1:]
+    gap, pressure, slope, density = rows[0, :n], rows[1, :n], rows[2, :n], rows[3, :n]
+    gradient, change, trial, strain = rows[4], rows[5], rows[6, :n], rows[7, :n]
+    scale = 1.0 / ac
+    shift = 0.0
+    for iteration in range(1, MOST_DESCENTS + 1):
+        for i in range(n):
+            gap[i] = standoff[i] + u[n] - u[i]
+            trial[i] = u[i] - v[i]
+        law(gap, parameters, pressure, slope, n)
+        potential(gap, parameters, density, n)
+        multiply(mesh.stiffness, trial, strain)
+        tail, border = 0.0, lever
+        if size > n:
+            tail, draw = beyond_mesh(gap[n - 1], rise, mesh, law, parameters, far_work)
+            border += draw
+        value, steepest = 0.5 * lever * u[n] * u[n] - tail * u[n], 0.0
+        gradient[n] = lever * u[n] - tail
+        for i in range(n):
+            push = mesh.masses[i] * pressure[i]
+            value += 0.5 * trial[i] * strain[i] * scale + mesh.masses[i] * density[i]
+            gradient[i] = strain[i] * scale + push
+            gradient[n] -= push
+            steepest = max(steepest, abs(slope[i]))
+        while True:
+            for i in range(size):
+                change[i] = -gradient[i]
+            _assemble(mesh, scale, slope, shift, border, hessian)
+            if factorise(hessian, size):
+                solve_factorised(hessian, change, size)
+                if size == n:
+                    change[n] = 0.0
+                largest, downhill = 0.0, change[n] * gradient[n]
+                for i in range(n):
+                    largest = max(largest, abs(change[i] - change[n]) / gap[i])
+                    downhill += change[i] * gradient[i]
+                if largest < LARGEST_DESCENT:
+                    break
+            shift = max(8.0 * shift, 1e-10 * steepest)
+        if shift == 0.0 and largest < accuracy:
+            for i in range(n + 1):
+                u[i] += change[i]
+            return iteration
+        length = 1.0
+        while length > 1e-8:
+            q = u[n] + length * change[n]
+            for i in range(n):
+                trial[i] = u[i] + length * change[i]
+                gap[i] = standoff[i] + q - trial[i]
+                trial[i] -= v[i]
+            potential(gap, parameters, density, n)
+            multiply(mesh.stiffness, trial, strain)
+            lower = 0.5 * lever * q * q - tail * q
+            for i in range(n):
+                lower += 0.5 * trial[i] * strain[i] * scale + mesh.masses[i] * density[i]
+            if lower <= value + SUFFICIENT * length * downhill + 1e-14 * abs(value):
+                break
+            length *= 0.5
+        for i in range(n + 1):
+            u[i] += length * change[i]
+        shift = 0.25 * shift if shift > 4e-10 * steepest else 0.0
+    return -1
+
+
+@compile_for(float64(VECTOR, VECTOR, VECTOR, MESH, float64, pointer(PRESSURE), VECTOR, MATRIX))
+def tip_force(pressure, gap, rise, mesh, frame, law, parameters, far_work):
+    """Force on the tip, N: the mesh's share and that of the flat surface beyond it."""
+    n = gap.size
+    total, _ = beyond_mesh(gap[n - 1], rise, mesh, law, parameters, far_work)
+    for i in range(n):
+        total += mesh.masses[i] * pressure[i]
+    return 2.0 * pi * frame * frame * total
+
+
+@compile_for((pointer(PROFILE), VECTOR, MESH, float64, VECTOR, VECTOR, VECTOR))
+def raise_tip(profile, parameters, mesh, frame, scratch, tip, rise):
+    """Heights of the tip above its apex at the nodes, and above the last node beyond the mesh."""
+    n, far = mesh.nodes.size, mesh.far.size
+    for i in range(far):
+        scratch[i] = frame * mesh.far[i]
+    profile(scratch, parameters, rise, far)
+    for i in range(n):
+        scratch[i] = frame * mesh.nodes[i]
+    profile(scratch, parameters, tip, n)
+    for i in range(far):
+        rise[i] -= tip[n - 1]

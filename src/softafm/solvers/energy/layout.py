@@ -1,0 +1,180 @@
+"""What the compiled loops of the energy solver work on, and the types that numba knows it by.
+
+Lengths in m, pressures in Pa, times in s. The surface is known on nodes r_i = a ξ_i of a unit mesh
+(softafm.halfspace.mesh) in a frame of radius a that follows the contact edge. Memory is carried as
+displacements: q = K p and y_m = K w_m with τ_m ẏ_m = q − y_m, so that u = −(J_g q + Σ J_m y_m), and
+a change of frame is an interpolation of smooth fields.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+from numba import float64, from_dtype, types
+
+VECTOR = float64[::1]
+MATRIX = float64[:, ::1]
+CONSTANT_VECTOR = types.Array(float64, 1, "C", readonly=True)
+CONSTANT_MATRIX = types.Array(float64, 2, "C", readonly=True)
+
+# Why `advance` came back.
+FINISHED, FULL, REMESH, FALL, STUCK, TRIGGERED = range(6)
+
+# Rows of `fields`: the last three shapes, the load q before and now, then one per memory mode y_m.
+DEFORMATION, EARLIER, EARLIEST, LOAD_EARLIER, LOAD, MEMORY = range(6)
+
+# Entry of the law's parameters: where its gaps are counted from. The solver's gaps are above it.
+ORIGIN = 0
+
+
+def record(*names: str) -> np.dtype:
+    """Return the type of a record of floats by their names."""
+    return np.dtype([(name, float) for name in names], align=True)
+
+
+CLOCK_FIELDS = record(
+    "time",  # the instant, s
+    "step",  # the step to try, s
+    "taken", "taken_earlier",  # the last two steps, s
+    "frame", "frame_earlier", "frame_earliest",  # radii of the frames of the last three shapes, m
+    "edge", "edge_earlier",  # radius of the contact edge, m
+    "axis_gap",  # gap on the axis, m
+    "force", "force_earlier", "force_earliest",  # N
+    "force_scale",  # the largest force so far, N
+    "deflection", "deflection_earlier", "deflection_earliest",  # of the lever, m
+    "history",  # number of past shapes fit for extrapolation
+    "tries",  # attempted steps so far
+    "newtons",  # iterations of Newton's method so far
+    # How large a second correction of Newton's was for the square of the first; 0 if that is not
+    # known, inf if it is no guide.
+    "contraction",
+)  # fmt: skip
+"""State of a run besides its fields."""
+
+RECORD_FIELDS = record(
+    "time",  # s
+    "height",  # of the tip, m
+    "force",  # N
+    "edge",  # radius of the contact edge, m
+    "axis",  # displacement of the surface on the axis, m
+    "loss",  # power dissipated in the sample, W
+    "coarseness",  # node spacing at the edge over the width of the cohesive zone
+    "frame",  # radius of the frame, m
+    "jump",  # energy released if an elastic jump led there, J, else 0
+)
+"""What is kept of every step."""
+
+
+class Mesh(NamedTuple):
+    """A ``softafm.halfspace.mesh.UnitMesh`` as the kernels take it."""
+
+    nodes: np.ndarray
+    masses: np.ndarray
+    stiffness: np.ndarray
+    edge_spacing: float
+    growth: float
+    far: np.ndarray
+    far_masses: np.ndarray
+    slopes: np.ndarray
+
+
+class Parameters(NamedTuple):
+    """Parameters of height, tip profile and surface law; J_g, J_1, ... in 1/Pa; τ_1, ... in s.
+
+    ``lever`` holds its stiffness, N/m, 0 for a rigid one, and the time in which it relaxes, s.
+    """
+
+    height: np.ndarray
+    tip: np.ndarray
+    law: np.ndarray
+    compliance: np.ndarray
+    retardation: np.ndarray
+    lever: np.ndarray
+
+
+class Background(NamedTuple):
+    """Memory from before ``since``, s, which only fades: y_m = values_m e^(−(t − since)/τ_m).
+
+    ``values`` (modes, nodes), or none, live on a mesh of this edge spacing and growth that ends at
+    ``end`` in a frame of radius ``frame``, m.
+    """
+
+    values: np.ndarray
+    frame: float
+    end: float
+    edge_spacing: float
+    growth: float
+    since: float
+
+
+class Controls(NamedTuple):
+    """What steers ``advance``: times s, lengths m, speed m/s, the rest dimensionless.
+
+    ``prediction``, ``memory`` and ``force`` are the errors allowed per step, ``newton`` that of an
+    equilibrium; all relative to the gap, but ``force`` to the largest force so far.
+    ``slack`` is how far the edge moves, in edge spacings, while the frame catches up with it.
+    Remeshing is asked for when the coarseness of a record leaves ``finest`` to ``coarsest``.
+    The step in which the force reaches ``trigger``, N, is the last.
+    """
+
+    end: float
+    shortest_step: float
+    longest_step: float
+    top_speed: float
+    open_frame: float
+    edge_gap: float
+    open_gap: float
+    prediction: float
+    memory: float
+    force: float
+    newton: float
+    slack: float
+    finest: float
+    coarsest: float
+    most_tries: float
+    trigger: float
+
+
+class Room(NamedTuple):
+    """Memory for the compiled loops to work in, for n nodes, f radii beyond and m modes."""
+
+    rows: np.ndarray
+    """(12, n + 1)."""
+    fields: np.ndarray
+    """(10 + 4m, n)."""
+    hessian: np.ndarray
+    """(n + 1, n + 1)."""
+    far: np.ndarray
+    """(4, f)."""
+    weights: np.ndarray
+    """(m + 1, 5)."""
+
+
+MESH = types.NamedTuple(
+    (
+        CONSTANT_VECTOR, CONSTANT_VECTOR, CONSTANT_MATRIX, float64, float64,
+        CONSTANT_VECTOR, CONSTANT_VECTOR, CONSTANT_MATRIX,
+    ),
+    Mesh,
+)  # fmt: skip
+PARAMETERS = types.NamedUniTuple(VECTOR, len(Parameters._fields), Parameters)
+BACKGROUND = types.NamedTuple((MATRIX, float64, float64, float64, float64, float64), Background)
+CONTROLS = types.NamedUniTuple(float64, len(Controls._fields), Controls)
+CLOCK = from_dtype(CLOCK_FIELDS)
+ROOM = types.NamedUniTuple(MATRIX, len(Room._fields), Room)
+RECORDS = types.Array(from_dtype(RECORD_FIELDS), 1, "C")
+
+
+def new_clock() -> np.void:
+    """Return a clock of zeros."""
+    return np.zeros(1, CLOCK_FIELDS)[0]
+
+
+def new_room(nodes: int, far: int, modes: int) -> Room:
+    """Return room for a mesh and a number of memory modes."""
+    return Room(
+        np.empty((12, nodes + 1)),
+        np.empty((10 + 4 * modes, nodes)),
+        np.empty((nodes + 1, nodes + 1)),
+        np.empty((4, far)),
+        np.empty((modes + 1, 5)),
+    )

@@ -1,0 +1,111 @@
+"""Memory of the energy solver: filters of the load, exact over a step, and the fading past."""
+
+from math import exp, pi
+
+from numba import float64, int64
+
+from softafm.compiled import compile_for, inlined
+from softafm.solvers.energy.frame import transfer
+from softafm.solvers.energy.layout import BACKGROUND, CONSTANT_VECTOR, MATRIX, VECTOR
+from softafm.solvers.energy.tuning import DAMPING, RINGING, SHORT, STIFF
+
+# Columns of the memory weights.
+DECAY, EARLIER, NOW, NEW, CURVATURE = range(5)
+
+
+@compile_for((float64, float64, int64, VECTOR, VECTOR, MATRIX))
+def memory_weights(step, last, order, compliance, retardation, weights):
+    """Weights of y⁺ = decay·y + earlier·q₋ + now·q + new·q⁺ over a step, one row per mode.
+
+    Exact for q linear in time, or with ``order`` 2, quadratic through the instant ``last`` before.
+    With k = step/τ: moments M_j = ∫₀¹ k e^(−k(1−s)) s^j ds; the quadratic adds M_2 − M_1 times the
+    second difference of q. In a contact held rigidly q itself relaxes, in τ J_g/(J_g + J_m). Over
+    steps longer than a few such times the quadratic formula, like Adams and Moulton's, would grow
+    without bound: there the linear one serves, or where that would ring, one with −3/2 of the
+    quadratic's correction, which is of second order too. ``curvature`` is the error allowed for per
+    second difference of q: for the quadratic formula that of the linear one, else thrice theirs.
+    """
+    for m in range(retardation.size):
+        k = step / retardation[m]
+        if k < SHORT:
+            m0 = k * (1.0 - k * (1.0 / 2 - k * (1.0 / 6 - k / 24)))
+            m1 = k * (1.0 / 2 - k * (1.0 / 6 - k * (1.0 / 24 - k / 120)))
+            m2 = k * (1.0 / 3 - k * (1.0 / 12 - k * (1.0 / 60 - k / 360)))
+        else:
+            m0 = 1.0 - exp(-k)
+            m1 = 1.0 - m0 / k
+            m2 = 1.0 - 2.0 * m1 / k
+        row = weights[m]
+        bend = m2 - m1
+        row[DECAY], row[EARLIER], row[NOW], row[NEW] = 1.0 - m0, 0.0, m0 - m1, m1
+        row[CURVATURE] = bend
+        if order == 2:
+            ratio = last / step
+            lag = compliance[m + 1] / compliance[0]
+            if k * (1.0 + lag) > STIFF:
+                ringing = abs(row[DECAY] - row[NOW] * lag) / (1.0 + row[NEW] * lag)
+                damping = DAMPING if ringing > RINGING else 0.0
+                row[CURVATURE] = 3.0 * (1.0 + damping) * bend
+                bend *= -damping
+            row[EARLIER] += bend / (ratio * (1.0 + ratio))
+            row[NOW] -= bend / ratio
+            row[NEW] += bend / (1.0 + ratio)
+
+
+@compile_for((BACKGROUND, float64, float64, VECTOR, CONSTANT_VECTOR, MATRIX, MATRIX))
+def recall(background, time, frame, retardation, nodes, work, memory):
+    """Memory of the background at ``time`` on the nodes of a frame, into ``memory`` (m, n).
+
+    Rows of modes that the background has not are zero.
+    """
+    modes = background.values.shape[0]
+    for m in range(modes, memory.shape[0]):
+        for i in range(nodes.size):
+            memory[m, i] = 0.0
+    if modes == 0:
+        return
+    transfer(
+        background.values, background.end, background.edge_spacing, background.growth,
+        frame / background.frame, nodes, work, memory,
+    )  # fmt: skip
+    for m in range(modes):
+        fading = exp(-(time - background.since) / retardation[m])
+        for i in range(nodes.size):
+            memory[m, i] *= fading
+
+
+@inlined
+def displace_by_memory(compliance, weights, load_earlier, load, memory, old, v):
+    """Carry the memory over a step as far as it is known; return the compliance of the step.
+
+    The step is an elastic contact of that compliance on a surface displaced by ``v``, which is
+    overwritten, as is ``memory`` (modes, n) of the instant before; ``old`` is that of the
+    background at the end of the step. The part of the new load is left out.
+    """
+    modes, n = memory.shape
+    total = compliance[0]
+    for i in range(n):
+        v[i] = 0.0
+    for m in range(modes):
+        total += compliance[m + 1] * weights[m, NEW]
+        for i in range(n):
+            memory[m, i] = (
+                weights[m, DECAY] * memory[m, i]
+                + weights[m, EARLIER] * load_earlier[i]
+                + weights[m, NOW] * load[i]
+            )
+            v[i] -= compliance[m + 1] * (memory[m, i] + old[m, i])
+    return total
+
+
+@inlined
+def dissipated_power(frame, compliance, retardation, lags, strained):
+    """Power that the dashpots of all modes take, W, by the lags q − y_m and S times them."""
+    modes, n = lags.shape
+    power = 0.0
+    for m in range(modes):
+        product = 0.0
+        for i in range(n):
+            product += lags[m, i] * strained[m, i]
+        power += 2.0 * pi * frame * compliance[m + 1] / retardation[m] * product
+    return power
