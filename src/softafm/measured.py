@@ -2,30 +2,62 @@
 
 from collections.abc import Mapping
 from pathlib import Path
+from typing import Literal
 
 import numpy as np
 
 from softafm.motions import Trajectory
-from softafm.tables import Table
+from softafm.tables import Table, shown
 from softafm.units import LENGTH, TIME, Kind
 
+Moves = Literal["tip", "base"]
 
-def read_trajectory(path: Path) -> Trajectory:
-    """Read a motion from columns ``time`` and ``height`` of a CSV file.
+
+def read_trajectory(path: str | Path, moves: Moves = "tip") -> Trajectory:
+    """Read a motion from columns ``time`` and ``height`` of a CSV file, straight between its rows.
 
     Parameters
     ----------
     path
-        CSV file whose header names the units, for example ``time (us),height (nm)``; other
-        columns are ignored.
+        CSV file that names the units, for example ``time (us),height (nm)``, or a curve that
+        ``softafm.export`` wrote; other columns are ignored.
+    moves
+        As in ``read_path``.
 
     Raises
     ------
     ValueError
-        As ``read_columns``, and as ``Trajectory``.
+        As ``read_path`` and ``Trajectory``.
     """
-    time, height = read_columns(path, {"time": TIME, "height": LENGTH}, "time (us),height (nm)")
-    return Trajectory(time, height)
+    return Trajectory(*read_path(path, moves))
+
+
+def read_path(path: str | Path, moves: Moves = "tip") -> tuple[np.ndarray, np.ndarray]:
+    """Read times (s) and heights (m) from a CSV file, to draw a ``Trajectory`` by.
+
+    Parameters
+    ----------
+    path
+        As in ``read_trajectory``.
+    moves
+        ``"tip"``, or ``"base"`` for that of a lever: whose height it is, ``tip_height`` or
+        ``base_height``, if the file has both. If it has one, or ``height`` instead, that is taken.
+
+    Raises
+    ------
+    ValueError
+        As ``Table``, its ``column`` and ``in_si``; if it has ``height`` and another of them.
+    """
+    if moves not in ("tip", "base"):
+        raise ValueError(f"moves = {moves!r}: must be 'tip' or 'base'")
+    table = Table(path, "time (us),height (nm)")
+    found = [c for c in map(table.find, ("height", "tip_height", "base_height")) if c is not None]
+    if len(found) > 1 and found[0].name == "height":
+        titles = " and ".join(shown(column.title) for column in found)
+        raise ValueError(f"has columns {titles}, any of which may be the motion; leave one")
+    name = found[0].name if len(found) == 1 else f"{moves}_height" if found else "height"
+    time = table.in_si(table.column("time"), TIME)
+    return time, table.in_si(table.column(name), LENGTH)
 
 
 def read_columns(path: str | Path, columns: Mapping[str, Kind], example: str) -> list[np.ndarray]:
