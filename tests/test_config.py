@@ -1430,6 +1430,56 @@ def test_bad_measured_motions(load, content, reason):
     assert reason in line
 
 
+RECORD = "time (us),height (nm)\n" + "".join(
+    f"{k},{1.5 + abs(k - 20) / 5 + (-1) ** k / 50:.3f}\n" for k in range(41)
+)
+
+
+def test_a_motion_from_a_file_may_be_smooth_or_measured(load):
+    document = measured(load, RECORD.encode())
+    motion = load(document).motion
+    samples = motion.time, motion.heights
+    assert motion == sa.Trajectory(*samples)
+    assert load(changed(document, "motion.smooth", True)).motion == sa.Trajectory(*samples, True)
+    document = changed(document, "motion.measured", True)
+    assert load(document).motion == sa.Trajectory.from_measurement(*samples)
+    assert load(document).motion.breaks[1] == pytest.approx(20e-6, rel=0.01)
+    document = changed(document, "motion.noise", "0.05 nm")
+    assert load(document).motion.noise == pytest.approx(0.05e-9)
+
+
+@pytest.mark.parametrize(
+    ("keys", "line"),
+    [
+        ({"noise": "1 nm"}, "motion.noise = '1 nm': of no use without measured = true"),
+        ({"measured": True, "noise": "0 nm"}, "motion.noise = '0 nm': must be greater than 0"),
+        ({"measured": True, "noise": 1}, "motion.noise = 1: must be a length with its unit, such"),
+        ({"measured": True, "smooth": True}, "motion.smooth = True: of no use with measured = tr"),
+        ({"measured": "yes"}, "motion.measured = 'yes': must be true or false"),
+        ({"smooth": 1}, "motion.smooth = 1: must be true or false"),
+        ({"measure": True}, "motion.measure: unknown key; did you mean 'measured'?"),
+    ],
+)
+def test_ways_to_draw_a_motion_that_do_not_go_together(load, keys, line):
+    document = measured(load, RECORD.encode())
+    document["motion"] |= keys
+    assert refusal(load, document).startswith(line)
+
+
+def test_too_short_a_record_is_refused(load):
+    document = measured(load, b"time (us),height (nm)\n0,10\n1,9\n")
+    document["motion"]["measured"] = True
+    line = "motion.file = 'motion.csv': time has 2 entries: a measurement must have at least 20; "
+    assert refusal(load, document).startswith(line)
+
+
+def test_spectroscopy_moves_the_base_and_other_modes_the_tip(load):
+    content = b"# a run\ntime (us),tip_height (nm),base_height (nm)\n0,10,11\n1,8,7\n"
+    motion = measured(load, content)["motion"]
+    for document, heights in ((CURVE, [10e-9, 8e-9]), (SPECTROSCOPY, [11e-9, 7e-9])):
+        assert load({**document, "motion": motion}).motion.heights == pytest.approx(heights)
+
+
 @pytest.mark.parametrize("name", ["none.csv", "", ".", "\u0000.csv", 3, "x" * 5000])
 def test_unreadable_measured_motions(load, name):
     assert refusal(load, measured(load, b"", name)).startswith("motion.file = ")

@@ -156,6 +156,17 @@ def test_a_path_is_found_in_its_record_and_its_corners_stay_sharp(name, noise, u
     assert found.breaks.size + found.landmarks.size <= 2 + corners.size + turning.size + 2
 
 
+@pytest.mark.parametrize(("samples", "noise"), [(500, 0.1e-9), (2000, 1e-9)])
+def test_a_turn_is_found_in_every_record_as_well_as_noise_allows(samples, noise):
+    records = (record(RAMP, samples, noise, seed) for seed in range(20))
+    paths = [sa.Trajectory.from_measurement(*given) for given in records]
+    assert {path.breaks.size for path in paths} == {3}
+    missed = [float(path.height(path.breaks[1])) - RAMP.turn for path in paths]
+    # A line through m samples errs at its end by 2 noise/√m; where two cross, by that over √2.
+    bound = 2 * noise / np.sqrt(samples / 2) / np.sqrt(2)
+    assert np.sqrt(np.mean(np.square(missed))) < 1.5 * bound
+
+
 def test_what_is_measured_of_drift_is_kept():
     time = np.linspace(0, 1, 3000)
     drifting = np.interp(time, [0, 0.5, 1], [1e-8, -5e-9, 1e-8]) + 2e-9 * time**2

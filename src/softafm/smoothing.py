@@ -90,9 +90,21 @@ def _corners(t: np.ndarray, y: np.ndarray, sigma: float) -> np.ndarray:
         certain = np.count_nonzero(gain > 2 * log(_CHANCE * n / reach))
         for i in np.argsort(-gain)[:certain]:
             if not found.size or np.abs(found - after[i]).min() >= reach:
-                found = np.sort(np.append(found, after[i]))
+                found = np.sort(np.append(found, _place(t, y, after[i], reach)))
         reach = int(1.6 * reach)
     return found
+
+
+def _place(t: np.ndarray, y: np.ndarray, after: int, reach: int) -> int:
+    """Return the sample near ``after`` for which one-sided fits leave least of the same samples."""
+    first, last = after - reach + 1, after + reach + 1
+    places = np.unique(np.linspace(after - reach // 2, after + reach // 2, 65).astype(int))
+    left = [
+        _unexplained(t[None, a:b], y[None, a:b], 2)[0]
+        for place in places
+        for a, b in ((first, place + 1), (place + 1, last))
+    ]
+    return int(places[np.argmin(np.sum(np.reshape(left, (-1, 2)), axis=1))])
 
 
 def _gain(t: np.ndarray, y: np.ndarray, sigma: float, after: np.ndarray, reach: int) -> np.ndarray:
@@ -107,7 +119,8 @@ def _gain(t: np.ndarray, y: np.ndarray, sigma: float, after: np.ndarray, reach: 
     two = _unexplained(times[:, :reach], values[:, :reach], 2)
     two += _unexplained(times[:, reach:], values[:, reach:], 2)
     freedom = 2 * reach - 6
-    return one - two - 4 * np.maximum(two - freedom - sqrt(2 * freedom), 0.0)
+    # The noise may be ten per cent larger than estimated.
+    return one - two - 4 * np.maximum(two - 1.2 * freedom - sqrt(2 * freedom), 0.0)
 
 
 def _unexplained(times: np.ndarray, values: np.ndarray, degree: int) -> np.ndarray:
