@@ -119,7 +119,7 @@ def _gain(t: np.ndarray, y: np.ndarray, sigma: float, after: np.ndarray, reach: 
     two = _unexplained(times[:, :reach], values[:, :reach], 2)
     two += _unexplained(times[:, reach:], values[:, reach:], 2)
     freedom = 2 * reach - 6
-    # The noise may be ten per cent larger than estimated.
+    # The noise may be a tenth larger than estimated.
     return one - two - 4 * np.maximum(two - 1.2 * freedom - sqrt(2 * freedom), 0.0)
 
 

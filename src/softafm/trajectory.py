@@ -13,7 +13,7 @@ _RECORD = 100
 _INVISIBLE = 1e-12
 """Distance that no instrument tells from none, m."""
 _CALM = 10.0
-"""A stretch is calm if its tip takes so much longer than the fastest one for the whole range."""
+"""A calm stretch lasts so many times as long as the whole range takes at the top speed."""
 
 
 class Trajectory:
