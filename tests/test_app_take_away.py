@@ -32,6 +32,9 @@ WITH_FILES = {
     "law.csv": "gap (nm),pressure (MPa)\n0.2,90\n0.3,0\n0.4,-20\n0.8,-4\n2,-0.2\n",
     "moduli.csv": "frequency (Hz),storage (MPa),loss (MPa)\n1,10,2\n10,14,4\n100,20,6\n1000,28,7\n",
     "motion.csv": "time (us),height (nm)\n0,5\n1,3\n2,1.5\n3,3\n4,5\n",
+    "curve.csv": "time (us),tip_height (nm),base_height (nm)\n0,5,5\n1,2,1.5\n2,5,5\n",
+    "record.csv": "time (us),height (nm)\n"
+    + "".join(f"{k},{1.5 + abs(k - 20) / 5 + (-1) ** k / 50:.3f}\n" for k in range(41)),
 }
 
 DOCUMENTS = {
@@ -99,6 +102,21 @@ DOCUMENTS = {
         "sample": {"model": "measured-moduli", "file": "moduli.csv", "poisson": 0.5},
         "surface": {"law": "tabulated", "file": "law.csv"},
         "motion": {"shape": "trajectory", "file": "motion.csv"},
+    },
+    **{
+        f"a motion from a file, {how}": force_curve(
+            motion={"shape": "trajectory", "file": name, **keys}
+        )
+        for how, name, keys in (
+            ("smooth", "motion.csv", {"smooth": True}),
+            ("measured", "record.csv", {"measured": True}),
+            ("of known noise", "record.csv", {"measured": True, "noise": "0.02 nm"}),
+        )
+    },
+    "a motion of the base from a file": {
+        **force_curve(motion={"shape": "trajectory", "file": "curve.csv"}),
+        "mode": "force-spectroscopy",
+        "cantilever": {"stiffness": "10 N/m"},
     },
     "listed ratios": {
         **config.document_from(config.example_text("ps-approach-curve"), ""),

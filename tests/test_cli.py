@@ -11,6 +11,7 @@ import tempfile
 import warnings
 from pathlib import Path
 
+import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
@@ -163,6 +164,25 @@ def test_spectroscopy_is_run_plotted_and_exported(folder, softafm):
     lines = (folder / "soft.csv").read_text(encoding="utf-8").splitlines()
     header = next(line for line in lines if not line.startswith("#"))
     assert {"base_height (m)", "deflection (m)"} < set(header.split(","))
+
+
+@pytest.mark.parametrize("name", ["attard-triangle", "ldpe-spectroscopy", "ldpe-tapping"])
+def test_what_is_exported_is_a_motion_to_run_again(folder, softafm, name):
+    softafm("example", name, "--force")
+    once = ("--set", "motion.cycles=1") if name == "ldpe-tapping" else ()
+    assert softafm("run", f"{name}.toml", *once, "--out", "run.nc")[0] == 0
+    assert softafm("export", "run.nc", "--out", "c.csv")[0] == 0
+    text = (folder / f"{name}.toml").read_text(encoding="utf-8")
+    text = re.sub(r"\[motion\]\n[^\[]*", '[motion]\nshape = "trajectory"\nfile = "c.csv"\n\n', text)
+    text = text.replace('"tapping-cycle"', '"force-distance"')
+    (folder / "again.toml").write_text(text, encoding="utf-8")
+    code, _, err = softafm("run", "again.toml", "--out", "again.nc")
+    assert (code, err) == (0, "")
+    first, again = (sa.load(folder / file) for file in ("run.nc", "again.nc"))
+    force = np.interp(first["time"], again["time"], again["force"])
+    largest = float(np.abs(first["force"]).max())
+    assert np.mean(np.abs(force - first["force"].values)) < 5e-3 * largest
+    assert float(again["force_min"]) == pytest.approx(float(first["force_min"]), rel=5e-3)
 
 
 def test_an_approach_curve_is_run_plotted_and_exported(folder, softafm):

@@ -1266,7 +1266,8 @@ def test_bad_tips_samples_and_surfaces(load, table, keys, line):
     [
         ("tip", {"shape": "measured"}, "radius (nm),height (nm)\n0,0\n2,0.4\n4,0.3\n6,2\n",
          "height[2] = 3e-10 m at r = 4e-09 m: must not be below height[1] = 4e-10 m"),
-        ("tip", {"shape": "measured"}, "radius,height\n0,0\n", "has no column 'radius' with a u"),
+        ("tip", {"shape": "measured"}, "radius,height\n0,0\n",
+         "column 'radius' has no unit: it must be that of a length"),
         ("sample", {"model": "measured-moduli", "poisson": 0.4},
          "frequency (Hz),storage (MPa),loss (MPa)\n1,1,.1\n10,2,.1\n5,3,.1\n",
          "frequency[2] = 5 Hz: must be above frequency[1] = 10 Hz"),
@@ -1280,7 +1281,7 @@ def test_bad_tips_samples_and_surfaces(load, table, keys, line):
          "gap (nm),pressure (MPa)\n0.2,-1\n0.3,-0.5\n0.5,-0.1\n1,-0.01\n",
          "pressures[0] = -1e+06 Pa at 2e-10 m: must repel, above 0; begin the table at a shorter"),
         ("surface", {"law": "tabulated"}, "gap (nm),pressure (MPa)\n0.2,9\n0.3,x\n",
-         "line 3 ('0.3,x') must hold a gap and a pressure"),
+         "line 3 ('0.3,x'): 'pressure' must be a finite number, such as 0.5 or 5e-9; found 'x'"),
     ],
 )  # fmt: skip
 def test_bad_measured_things(load, table, keys, content, line):
@@ -1410,7 +1411,7 @@ def test_a_measured_motion_lies_beside_the_file(load):
         (b"time (us),height (nm)\n", "at least 2"),
         (b"time (us),height (nm)\n0,10\n", "at least 2"),
         (b"0,10\n1,9\n", "no column 'time'"),
-        (b"time,height\n0,10\n1,9\n", "no column 'time' with a unit"),
+        (b"time,height\n0,10\n1,9\n", "column 'time' has no unit"),
         (b"time (us),z (nm)\n0,10\n1,9\n", "no column 'height'"),
         (b"time (nm),height (nm)\n0,10\n1,9\n", "'time (nm)' must name a unit of a time"),
         (b"time (us),height (nm)\n0,10\n1,x\n", "line 3 ('1,x')"),
@@ -1427,6 +1428,56 @@ def test_bad_measured_motions(load, content, reason):
     line = refusal(load, measured(load, content))
     assert line.startswith("motion.file = 'motion.csv': ")
     assert reason in line
+
+
+RECORD = "time (us),height (nm)\n" + "".join(
+    f"{k},{1.5 + abs(k - 20) / 5 + (-1) ** k / 50:.3f}\n" for k in range(41)
+)
+
+
+def test_a_motion_from_a_file_may_be_smooth_or_measured(load):
+    document = measured(load, RECORD.encode())
+    motion = load(document).motion
+    samples = motion.time, motion.heights
+    assert motion == sa.Trajectory(*samples)
+    assert load(changed(document, "motion.smooth", True)).motion == sa.Trajectory(*samples, True)
+    document = changed(document, "motion.measured", True)
+    assert load(document).motion == sa.Trajectory.from_measurement(*samples)
+    assert load(document).motion.breaks[1] == pytest.approx(20e-6, rel=0.01)
+    document = changed(document, "motion.noise", "0.05 nm")
+    assert load(document).motion.noise == pytest.approx(0.05e-9)
+
+
+@pytest.mark.parametrize(
+    ("keys", "line"),
+    [
+        ({"noise": "1 nm"}, "motion.noise = '1 nm': of no use without measured = true"),
+        ({"measured": True, "noise": "0 nm"}, "motion.noise = '0 nm': must be greater than 0"),
+        ({"measured": True, "noise": 1}, "motion.noise = 1: must be a length with its unit, such"),
+        ({"measured": True, "smooth": True}, "motion.smooth = True: of no use with measured = tr"),
+        ({"measured": "yes"}, "motion.measured = 'yes': must be true or false"),
+        ({"smooth": 1}, "motion.smooth = 1: must be true or false"),
+        ({"measure": True}, "motion.measure: unknown key; did you mean 'measured'?"),
+    ],
+)
+def test_ways_to_draw_a_motion_that_do_not_go_together(load, keys, line):
+    document = measured(load, RECORD.encode())
+    document["motion"] |= keys
+    assert refusal(load, document).startswith(line)
+
+
+def test_too_short_a_record_is_refused(load):
+    document = measured(load, b"time (us),height (nm)\n0,10\n1,9\n")
+    document["motion"]["measured"] = True
+    line = "motion.file = 'motion.csv': time has 2 entries: a measurement must have at least 20; "
+    assert refusal(load, document).startswith(line)
+
+
+def test_spectroscopy_moves_the_base_and_other_modes_the_tip(load):
+    content = b"# a run\ntime (us),tip_height (nm),base_height (nm)\n0,10,11\n1,8,7\n"
+    motion = measured(load, content)["motion"]
+    for document, heights in ((CURVE, [10e-9, 8e-9]), (SPECTROSCOPY, [11e-9, 7e-9])):
+        assert load({**document, "motion": motion}).motion.heights == pytest.approx(heights)
 
 
 @pytest.mark.parametrize("name", ["none.csv", "", ".", "\u0000.csv", 3, "x" * 5000])

@@ -206,6 +206,10 @@ def test_the_snippets_of_the_command_line_page_are_accepted(snippet, tmp_path):
     mode = written.get("mode", "tapping-cycle")
     if "free_amplitude" in written.get("motion", {}):
         mode = "approach-curve"
+    if "file" in written.get("motion", {}):
+        mode = "force-distance"
+        rows = "".join(f"{k},{15 - abs(k - 20) / 2}\n" for k in range(41))
+        (tmp_path / written["motion"]["file"]).write_text(f"time (ms),height (nm)\n{rows}")
     document = {**base, **written, "mode": mode}
     path.write_text(
         "\n".join(f"{key} = {_inline(value)}" for key, value in document.items()), encoding="utf-8"

@@ -24,8 +24,9 @@ def sine(time, parameters):
 
 @compiled(HEIGHT)
 def sampled(time, parameters):
-    """Cubic Hermite interpolation; parameters hold times, heights and slopes, n of each."""
-    n = parameters.size // 3
+    """Cubics between n times; parameters hold the times, then n − 1 coefficients of each power of
+    the time since the last of them, the highest power first."""
+    n = (parameters.size + 4) // 5
     low, high = 0, n - 1
     while high - low > 1:
         middle = (low + high) // 2
@@ -33,9 +34,6 @@ def sampled(time, parameters):
             low = middle
         else:
             high = middle
-    step = parameters[low + 1] - parameters[low]
-    x = (time - parameters[low]) / step
-    y0, y1 = parameters[n + low], parameters[n + low + 1]
-    d0, d1 = step * parameters[2 * n + low], step * parameters[2 * n + low + 1]
-    rest = 1 - x
-    return rest * rest * (y0 * (1 + 2 * x) + d0 * x) + x * x * (y1 * (3 - 2 * x) - d1 * rest)
+    x, at, pieces = time - parameters[low], n + low, n - 1
+    height = parameters[at] * x + parameters[at + pieces]
+    return (height * x + parameters[at + 2 * pieces]) * x + parameters[at + 3 * pieces]

@@ -2,6 +2,7 @@
 
 Besides its parameters a motion tells the solver where it is not smooth (``breaks``), which instants
 matter (``landmarks``), how fast it gets (``top_speed``), and its height as a compiled function.
+One whose speed varies may tell how fast it gets for a while (``top_speed_between``).
 """
 
 from dataclasses import dataclass, replace
@@ -10,6 +11,9 @@ from typing import ClassVar, Literal
 import numpy as np
 
 from softafm._validate import finite, positive
+from softafm.trajectory import Trajectory
+
+__all__ = ["Sine", "Trajectory", "Triangle", "lowest_height"]
 
 
 @dataclass(frozen=True)
@@ -94,6 +98,10 @@ class Triangle:
     def top_speed(self) -> float:
         """Largest magnitude of the velocity, m/s."""
         return self.speed
+
+    def top_speed_between(self, start: float, end: float) -> float:
+        """Largest magnitude of the velocity from ``start`` to ``end``, s; in m/s."""
+        return 0.0 if self.breaks[1] <= start and end <= self.breaks[-2] else self.speed
 
     @property
     def _middle(self) -> float:
@@ -197,109 +205,6 @@ class Sine:
         from softafm.kernels import sine
 
         return sine, np.array([self.mean_height, self.amplitude, self.frequency])
-
-
-class Trajectory:
-    """Any sampled motion, for example a measured one, interpolated by monotone cubics (PCHIP).
-
-    Parameters
-    ----------
-    time
-        Strictly increasing instants, s, shape (n,), n ≥ 2. The first may be any number.
-    height
-        Tip heights at these instants, m, shape (n,).
-
-    Raises
-    ------
-    ValueError
-        If the arrays differ in length, are too short, hold a NaN or an infinity, or the times do
-        not increase.
-    """
-
-    kind: ClassVar[str] = "trajectory"
-
-    def __init__(self, time, height):
-        from scipy.interpolate import PchipInterpolator
-
-        self.time, self.heights = as_numbers("time", time), as_numbers("height", height)
-        if self.time.ndim != 1 or self.time.shape != self.heights.shape or self.time.size < 2:
-            raise ValueError(
-                f"time and height have shapes {self.time.shape} and {self.heights.shape}: must be "
-                "one-dimensional, of equal length and at least 2 long"
-            )
-        for name, values, unit in (("time", self.time, "s"), ("height", self.heights, "m")):
-            bad = np.flatnonzero(~np.isfinite(values))
-            if bad.size:
-                raise ValueError(
-                    f"{name}[{bad[0]}] = {values[bad[0]]} {unit}: must be a finite number"
-                )
-        back = np.flatnonzero(np.diff(self.time) <= 0)
-        if back.size:
-            i = back[0] + 1
-            raise ValueError(
-                f"time[{i}] = {self.time[i]:g} s: must be later than time[{i - 1}] = "
-                f"{self.time[i - 1]:g} s"
-            )
-        self.time.setflags(write=False)
-        self.heights.setflags(write=False)
-        self._interpolant = PchipInterpolator(self.time, self.heights)
-        self._rate = self._interpolant.derivative()
-
-    def __eq__(self, other):
-        if not isinstance(other, Trajectory):
-            return NotImplemented
-        return np.array_equal(self.time, other.time) and np.array_equal(self.heights, other.heights)
-
-    def __hash__(self):
-        return hash((self.time.tobytes(), self.heights.tobytes()))
-
-    def __repr__(self):
-        return f"Trajectory({self.time.size} points, {self.time[0]:g} to {self.time[-1]:g} s)"
-
-    @property
-    def breaks(self) -> np.ndarray:
-        """First and last time and those of the corners between them, s.
-
-        A corner is a sample where the velocity changes by over a tenth of its largest magnitude.
-        """
-        velocity = np.diff(self.heights) / np.diff(self.time)
-        corner = np.abs(np.diff(velocity)) > 0.1 * np.abs(velocity).max()
-        return self.time[np.concatenate([[True], corner, [True]])]
-
-    @property
-    def landmarks(self) -> np.ndarray:
-        """Times of the turning points inside the motion, s."""
-        slope = np.sign(np.diff(self.heights))
-        return self.time[1:-1][slope[1:] * slope[:-1] < 0]
-
-    @property
-    def top_speed(self) -> float:
-        """Largest magnitude of the velocity between samples, m/s; a still tip counts as 1 fm/s."""
-        fastest = np.max(np.abs(np.diff(self.heights) / np.diff(self.time)))
-        return max(1.5 * float(fastest), 1e-15)
-
-    def height(self, time):
-        """Height at ``time`` (s), m."""
-        return self._interpolant(time)
-
-    def velocity(self, time):
-        """Velocity at ``time`` (s), m/s."""
-        return self._rate(time)
-
-    @property
-    def compiled_height(self):
-        """The height as a compiled function and its parameters (see ``softafm.compiled``)."""
-        from softafm.kernels import sampled
-
-        return sampled, np.concatenate([self.time, self.heights, self._rate(self.time)])
-
-
-def as_numbers(name: str, values) -> np.ndarray:
-    """Return a copy of ``values`` as an array of floats, or raise ValueError naming them."""
-    try:
-        return np.array(values, float)
-    except (TypeError, ValueError):
-        raise ValueError(f"{name}: must be a sequence of numbers") from None
 
 
 def lowest_height(motion) -> float:

@@ -89,7 +89,7 @@ def describe(thing) -> dict:
     if is_dataclass(thing):
         values = {f.name: _described(getattr(thing, f.name)) for f in fields(thing)}
     else:
-        values = {"time": thing.time.tolist(), "height": thing.heights.tolist()}
+        values = thing.description
     return {"kind": thing.kind, **values}
 
 
@@ -283,10 +283,12 @@ def _write_csv(result, path):
     header = [f"{v.name} = {float(v):.9g} {v.units}" for v in scalars]
     header += [f"experiment = {result.attrs['experiment']}"]
     names = ",".join(f"{v.name} ({v.units})" for v in curves)
-    rows = np.column_stack(curves)
+    # To the last digit: steps of a fall may be closer than nine digits tell apart.
+    rows = np.column_stack(curves).tolist()
     with open(path, "w", encoding="utf-8") as out:
         out.writelines(f"# {line}\n" for line in header)
-        np.savetxt(out, rows, fmt="%.9g", delimiter=",", header=names, comments="")
+        out.write(f"{names}\n")
+        out.writelines(",".join(map(repr, row)) + "\n" for row in rows)
 
 
 def write_whole(path, overwrite, write):

@@ -6,6 +6,7 @@ its fields are the table's other keys, and ``build`` returns the object.
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, fields
+from functools import partial
 from inspect import Parameter, signature
 from pathlib import Path
 from typing import Annotated, Any, ClassVar, Literal, get_args, get_origin, get_type_hints
@@ -192,12 +193,39 @@ class TapMotion(SineMotion):
 
 
 class TrajectoryMotion(Table):
-    """``[motion] shape = "trajectory"``: a CSV file beside the experiment file."""
+    """``[motion] shape = "trajectory"``: a CSV file beside the experiment file.
+
+    Parameters
+    ----------
+    measured
+        Whether the path is a record with noise, which is to be smoothed between its corners.
+    """
 
     file: Annotated[Any, *file_of(read_trajectory)]
+    smooth: Flag = False
+    measured: Flag = False
+    noise: Annotated[Length, Positive] | None = None
 
     def build(self) -> Trajectory:
-        return self.file
+        if self.noise is not None and not self.measured:
+            raise ValueError("noise = : of no use without measured = true")
+        if self.smooth and self.measured:
+            raise ValueError(
+                "smooth = True: of no use with measured = true, which is smooth between corners"
+            )
+        samples = self.file.time, self.file.heights
+        if not self.measured:
+            return Trajectory(*samples, smooth=True) if self.smooth else self.file
+        try:
+            return Trajectory.from_measurement(*samples, noise=self.noise)
+        except ValueError as error:
+            raise ValueError(f"file = : {error}") from None
+
+
+class BaseTrajectoryMotion(TrajectoryMotion):
+    """``[motion] shape = "trajectory"`` of the base of a lever."""
+
+    file: Annotated[Any, *file_of(partial(read_trajectory, moves="base"))]
 
 
 @dataclass(frozen=True)
@@ -496,7 +524,7 @@ _ANY_MOTION: dict[str, type[Table]] = {
 
 MOTIONS: dict[str, dict[str, type[Table]]] = {
     "force-distance": _ANY_MOTION,
-    "force-spectroscopy": _ANY_MOTION,
+    "force-spectroscopy": {**_ANY_MOTION, "trajectory": BaseTrajectoryMotion},
     "tapping-cycle": {"sine": TapMotion},
     "approach-curve": {"sine": SweepMotion},
 }

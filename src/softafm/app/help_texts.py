@@ -11,11 +11,17 @@ from softafm.cantilever import Cantilever
 from softafm.measured import read_trajectory
 from softafm.modes.approach import approach_curve
 from softafm.modes.force_distance import force_distance
-from softafm.motions import Sine, Triangle
+from softafm.motions import Sine, Trajectory, Triangle
 from softafm.rheology import GeneralizedMaxwell, StandardLinearSolid, read_dma
 from softafm.surfaces import SumOfLaws, read_law
 from softafm.tips import read_tip_profile
 
+_TRAJECTORY = (
+    read_trajectory,
+    schema.TrajectoryMotion,
+    Trajectory,
+    Trajectory.from_measurement,
+)
 _STANDS_FOR: dict[Any, tuple[Callable, ...]] = {
     schema.StandardLinearSolidSample: (
         StandardLinearSolid,
@@ -25,7 +31,8 @@ _STANDS_FOR: dict[Any, tuple[Callable, ...]] = {
     schema.TriangleMotion: (Triangle, Triangle.from_frequency),
     schema.SineMotion: (Sine,),
     schema.TapMotion: (Sine,),
-    schema.TrajectoryMotion: (read_trajectory,),
+    schema.TrajectoryMotion: _TRAJECTORY,
+    schema.BaseTrajectoryMotion: _TRAJECTORY,
     schema.SweepMotion: (approach_curve, schema.SweepMotion),
     schema.LeverTable: (Cantilever,),
     schema.ResonatorTable: (Cantilever,),

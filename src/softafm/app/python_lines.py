@@ -46,7 +46,8 @@ def python_lines(document: Mapping[str, Any], folder: Path) -> str:
         lines.append(f"cantilever = {_source(experiment.cantilever)}")
     arguments = ["contact", *(["cantilever"] if experiment.cantilever is not None else [])]
     if experiment.mode in ("force-distance", "force-spectroscopy"):
-        lines.append(f"motion = {_motion(experiment.motion, document['motion'])}")
+        lever = experiment.cantilever is not None
+        lines.append(f"motion = {_motion(experiment.motion, document['motion'], lever)}")
         arguments.append("motion")
     else:
         arguments += _oscillation(experiment, document["motion"])
@@ -56,8 +57,9 @@ def python_lines(document: Mapping[str, Any], folder: Path) -> str:
     imports = ["import softafm as sa"]
     if "np." in body:
         imports.insert(0, "import numpy as np\n")
-    if "read_trajectory(" in body:
-        imports.append("from softafm.measured import read_trajectory")
+    for name in ("read_path", "read_trajectory"):
+        if f"{name}(" in body:
+            imports.append(f"from softafm.measured import {name}")
     return "\n".join(imports) + "\n\n" + body
 
 
@@ -91,10 +93,17 @@ def _surface(law: Any, written: Mapping[str, Any]) -> str:
     return _source(law)
 
 
-def _motion(motion: Any, written: Mapping[str, Any]) -> str:
-    if "file" in written:
-        return f"read_trajectory({_value(written['file'])})"
-    return _source(motion)
+def _motion(motion: Any, written: Mapping[str, Any], lever: bool) -> str:
+    if "file" not in written:
+        return _source(motion)
+    given = [_value(written["file"]), *(['moves="base"'] if lever else [])]
+    samples = f"*{_call('read_path', given)}"
+    if motion.smooth:
+        return _call("sa.Trajectory", [samples, "smooth=True"])
+    if motion.noise is not None:
+        noise = [f"noise={_value(motion.noise)}"] if "noise" in written else []
+        return _call("sa.Trajectory.from_measurement", [samples, *noise])
+    return _call("read_trajectory", given)
 
 
 def _oscillation(experiment: Experiment, written: Mapping[str, Any]) -> list[str]:

@@ -22,6 +22,8 @@ def carry(contact, motion, solver, tolerance, profiles, progress, **options):
         refuse_steady_flow(contact)
     refuse_unable(solver, motion)
     warn_outside_window(contact, motion)
+    for doubt in getattr(motion, "doubts", ()):
+        warnings.warn(doubt, AccuracyWarning, stacklevel=3)  # the caller of the mode
     with reporting(progress) as report:
         history = solver.solve(
             contact, motion, tolerance=tolerance, profiles=profiles, progress=report, **options

@@ -91,7 +91,7 @@ class Run:
             # However little happens, smooth curves need points.
             longest = (stop - surface.time) / 12 * self.strictness**0.25
             self.controls = self.controls._replace(
-                longest_step=longest, trigger=self._trigger(stop)
+                longest_step=longest, trigger=self._trigger(stop), top_speed=self._top_speed(stop)
             )
             outcome = FULL
             while outcome not in (FINISHED, TRIGGERED):
@@ -153,6 +153,11 @@ class Run:
         """Return the force that turns the ramp before ``stop``, N."""
         force = getattr(self.motion, "setpoint_force", None)
         return np.inf if force is None or stop > self.breaks[1] else force
+
+    def _top_speed(self, stop) -> float:
+        """Return how fast the motion gets until ``stop``, m/s, if it tells."""
+        between = getattr(self.motion, "top_speed_between", None)
+        return self.motion.top_speed if between is None else between(self.surface.time, stop)
 
     def _turn(self):
         """Let the ramp turn now, its force having been reached."""
