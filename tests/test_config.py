@@ -1266,7 +1266,8 @@ def test_bad_tips_samples_and_surfaces(load, table, keys, line):
     [
         ("tip", {"shape": "measured"}, "radius (nm),height (nm)\n0,0\n2,0.4\n4,0.3\n6,2\n",
          "height[2] = 3e-10 m at r = 4e-09 m: must not be below height[1] = 4e-10 m"),
-        ("tip", {"shape": "measured"}, "radius,height\n0,0\n", "has no column 'radius' with a u"),
+        ("tip", {"shape": "measured"}, "radius,height\n0,0\n",
+         "column 'radius' has no unit: it must be that of a length"),
         ("sample", {"model": "measured-moduli", "poisson": 0.4},
          "frequency (Hz),storage (MPa),loss (MPa)\n10,1,.1\n1,1,.1\n10,2,.2\n",
          "storage is 1e+06 and 2e+06 Pa at one frequency, 10 Hz: must be of one sample at one "),
@@ -1280,7 +1281,7 @@ def test_bad_tips_samples_and_surfaces(load, table, keys, line):
          "gap (nm),pressure (MPa)\n0.2,-1\n0.3,-0.5\n0.5,-0.1\n1,-0.01\n",
          "pressures[0] = -1e+06 Pa at 2e-10 m: must repel, above 0; begin the table at a shorter"),
         ("surface", {"law": "tabulated"}, "gap (nm),pressure (MPa)\n0.2,9\n0.3,x\n",
-         "line 3 ('0.3,x') must hold a gap and a pressure"),
+         "line 3 ('0.3,x'): 'pressure' must be a finite number, such as 0.5 or 5e-9; found 'x'"),
     ],
 )  # fmt: skip
 def test_bad_measured_things(load, table, keys, content, line):
@@ -1410,7 +1411,7 @@ def test_a_measured_motion_lies_beside_the_file(load):
         (b"time (us),height (nm)\n", "at least 2"),
         (b"time (us),height (nm)\n0,10\n", "at least 2"),
         (b"0,10\n1,9\n", "no column 'time'"),
-        (b"time,height\n0,10\n1,9\n", "no column 'time' with a unit"),
+        (b"time,height\n0,10\n1,9\n", "column 'time' has no unit"),
         (b"time (us),z (nm)\n0,10\n1,9\n", "no column 'height'"),
         (b"time (nm),height (nm)\n0,10\n1,9\n", "'time (nm)' must name a unit of a time"),
         (b"time (us),height (nm)\n0,10\n1,x\n", "line 3 ('1,x')"),

@@ -413,11 +413,14 @@ def test_moduli_from_a_file(tmp_path):
 @pytest.mark.parametrize(
     ("text", "message"),
     [
-        ("", "is empty; its first line must read, for example, 'frequency "),
-        ("frequency,storage (MPa),loss (MPa)\n", "has no column 'frequency' with a unit"),
+        ("", "is empty; its header must read, for example, 'frequency "),
+        ("frequency,storage (MPa),loss (MPa)\n", "column 'frequency' has no unit"),
         ("frequency (Hz),storage (nm),loss (MPa)\n", "must name a unit of a modulus"),
-        ("frequency (Hz),storage (Pa),loss (Pa)\n1,2\n", "line 2 .* must hold "),
-        ("frequency (Hz),storage (Pa),loss (Pa)\n1,2,x\n", "line 2 .* must hold "),
+        ("frequency (Hz),storage (Pa),loss (Pa)\n1,2\n", "line 2 .* has no 'loss'"),
+        (
+            "frequency (Hz),storage (Pa),loss (Pa)\n1,2,x\n",
+            "line 2 .* 'loss' must be a finite number",
+        ),
         ("frequency (Hz),storage (Pa),loss (Pa)\n1,2,3\n", "must be a list of 2 to 2000 "),
         ("frequency (Hz),storage (Pa),loss (Pa)\n1,2,3\n2,2,-3\n", r"^loss\[1\] = -3 Pa: must be"),
     ],

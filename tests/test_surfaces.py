@@ -446,11 +446,14 @@ def test_laws_from_files(tmp_path):
 @pytest.mark.parametrize(
     ("text", "message"),
     [
-        ("", "its first line must read, for example, 'gap .nm"),
-        ("gap (nm),pressure\n", "has no column 'pressure'"),
+        ("", "its header must read, for example, 'gap .nm"),
+        ("gap (nm),pressure\n", "column 'pressure' has no unit"),
         ("gap (s),pressure (Pa)\n", r"column 'gap \(s\)' must name a unit of a length"),
         ("gap (nm),pressure (nm)\n", r"column 'pressure \(nm\)' must name a unit of a pressure"),
-        ("gap (nm),pressure (Pa)\n0.1,5\n0.2,much\n", r"line 3 \('0.2,much'\) must hold"),
+        (
+            "gap (nm),pressure (Pa)\n0.1,5\n0.2,much\n",
+            r"line 3 \('0.2,much'\): 'pressure' must be a finite number",
+        ),
         ("gap (nm),pressure (Pa)\n0.1,5\n", "gaps has 1 entries: must have at least 4"),
     ],
 )

@@ -175,12 +175,15 @@ def test_profiles_are_read_from_files(tmp_path):
 @pytest.mark.parametrize(
     ("text", "message"),
     [
-        ("", r"is empty; its first line must read, .* 'radius \(nm\),height \(nm\)'"),
-        ("radius,height\n0,0\n", "no column 'radius' with a unit"),
-        ("radius (nm)\n0\n", "no column 'height' with a unit"),
+        ("", r"is empty; its header must read, .* 'radius \(nm\),height \(nm\)'"),
+        ("radius,height\n0,0\n", "column 'radius' has no unit"),
+        ("radius (nm)\n0\n", "has no column 'height'; its header, line 1, reads 'radius"),
         ("radius (nm),height (kg)\n0,0\n", r"'height \(kg\)' must name a unit of a length"),
-        ("radius (nm),height (nm)\n0,0\n1,high\n", r"line 3 \('1,high'\) must hold a radius"),
-        ("radius (nm),height (nm)\n0,0\n1,1\n2\n", r"line 4 \('2'\) must hold a radius"),
+        (
+            "radius (nm),height (nm)\n0,0\n1,high\n",
+            r"line 3 \('1,high'\): 'height' must be a finite number",
+        ),
+        ("radius (nm),height (nm)\n0,0\n1,1\n2\n", r"line 4 \('2'\) has no 'height'"),
         ("radius (nm),height (nm)\n0,0\n1,1\n2,3\n", r"r has 3 entries: must have at least 4"),
     ],
 )

@@ -2,13 +2,13 @@
 
 from pathlib import Path
 
-from softafm.measured import read_columns
+from softafm.tables import Table
 from softafm.tips.measured import MeasuredTip
 from softafm.units import LENGTH
 
 
 def read_tip_profile(path: str | Path) -> MeasuredTip:
-    """Read a tip from columns ``radius`` and ``height`` of a CSV file.
+    """Read a tip from columns ``radius``, or ``r``, and ``height`` of a CSV file.
 
     Parameters
     ----------
@@ -22,6 +22,8 @@ def read_tip_profile(path: str | Path) -> MeasuredTip:
         If the file cannot be read, lacks a column or a unit, or holds what is no profile; the
         message names the line, or the entry counted from 0, of what is wrong.
     """
-    columns = {"radius": LENGTH, "height": LENGTH}
-    r, height = read_columns(path, columns, "radius (nm),height (nm)")
+    table = Table(path, "radius (nm),height (nm)")
+    r, height = (
+        table.in_si(c, LENGTH) for c in (table.column("radius", "r"), table.column("height"))
+    )
     return MeasuredTip(tuple(r.tolist()), tuple(height.tolist()))
