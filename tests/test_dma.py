@@ -12,6 +12,8 @@ import numpy as np
 import pytest
 
 import softafm as sa
+from softafm.app.python_lines import python_lines
+from softafm.config import document_from, load_experiment
 from softafm.rheology import (
     FractionalStandardLinearSolid,
     GeneralizedMaxwell,
@@ -439,3 +441,118 @@ def test_figure_of_a_fit_shows_the_data():
     points = [line for line in figure.axes[1].lines if line.get_linestyle() == "None"]
     assert [line.get_xdata().size for line in points] == [25, 25]
     assert points[0].get_ydata() == pytest.approx(data[1] / 1e6)
+
+
+# Tables as instruments and papers give them
+
+RUBBER = GeneralizedMaxwell(1e6, [1e6, 5e6], [1e-2, 1e-4], 0.4)
+HERTZ = np.geomspace(0.1, 1e3, 21)
+STORAGE, LOSS = moduli_of(RUBBER, HERTZ)
+RADIANS, MEGA, TANGENT = 2 * pi * HERTZ, 1e-6, LOSS / STORAGE
+MAGNITUDE, PHASE = np.hypot(STORAGE, LOSS), np.arctan2(LOSS, STORAGE)
+SHEAR = 1 / (2 * 1.4)
+
+
+def table(header, *columns, separator=","):
+    rows = zip(*columns, strict=True)
+    lines = (separator.join(f"{number:.12g}" for number in row) for row in rows)
+    return "\n".join([header, *lines, ""])
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        table("Frequency (Hz),Storage modulus (MPa),Loss modulus (MPa)", HERTZ, STORAGE * MEGA,
+              LOSS * MEGA),
+        table("f (Hz),E' (Pa),E'' (Pa)", HERTZ, STORAGE, LOSS),
+        table("f [kHz];E′ [MPa];E″ [kPa]", HERTZ / 1e3, STORAGE * MEGA, LOSS / 1e3, separator=";"),
+        table('f / Hz\tE\' / Pa\tE" / Pa', HERTZ, STORAGE, LOSS, separator="\t"),
+        table("freq,storage,loss\nHz,MPa,MPa", HERTZ, STORAGE * MEGA, LOSS * MEGA),
+        table("frequency (rad/s),storage (Pa),loss (Pa)", RADIANS, STORAGE, LOSS),
+        table("Angular frequency (rad/s),E' (Pa),E'' (Pa)", RADIANS, STORAGE, LOSS),
+        table("omega (1/s),E' (Pa),E'' (Pa)", RADIANS, STORAGE, LOSS),
+        table("ω,E',tan δ\nrad/s,Pa,1", RADIANS, STORAGE, TANGENT),
+        table("f (Hz),E'' (Pa),tan(delta)", HERTZ, LOSS, TANGENT),
+        table("f (Hz),Loss factor (-),|E*| (Pa)", HERTZ, TANGENT, MAGNITUDE),
+        table("f (Hz),Complex modulus (Pa),Phase angle (deg)", HERTZ, MAGNITUDE, np.degrees(PHASE)),
+        table("f (Hz),|E*| (Pa),δ (rad)", HERTZ, MAGNITUDE, PHASE),
+        table("f (Hz),E* (Pa),delta (°)", HERTZ, MAGNITUDE, np.degrees(PHASE)),
+        table("f (Hz),omega (rad/s),E' (Pa),E'' (Pa),|eta*| (Pa s)", HERTZ, RADIANS, STORAGE, LOSS,
+              MAGNITUDE / RADIANS),
+        table("f (Hz),E' (Pa),E'' (Pa)", HERTZ[::-1], STORAGE[::-1], LOSS[::-1]),
+    ],
+)  # fmt: skip
+def test_tables_that_mean_one_thing_are_read(tmp_path, text):
+    path = tmp_path / "dma.csv"
+    path.write_text(text, encoding="utf-8")
+    for read, true in zip(read_dma(path), (HERTZ, STORAGE, LOSS), strict=True):
+        np.testing.assert_allclose(read, true, rtol=1e-10)
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        table("f (Hz),G' (Pa),G'' (Pa)", HERTZ, SHEAR * STORAGE, SHEAR * LOSS),
+        table("f (Hz),Shear storage modulus (Pa),Shear loss modulus (Pa)", HERTZ, SHEAR * STORAGE,
+              SHEAR * LOSS),
+        table("f (Hz),|G*| (Pa),δ (deg)", HERTZ, SHEAR * MAGNITUDE, np.degrees(PHASE)),
+        table("f (Hz),G' (Pa),Loss modulus (Pa)", HERTZ, SHEAR * STORAGE, SHEAR * LOSS),
+        # The complex modulus of a table in shear is not Young's.
+        table("f (Hz),G' (Pa),G'' (Pa),Complex modulus (Pa),tan δ", HERTZ, SHEAR * STORAGE,
+              SHEAR * LOSS, SHEAR * MAGNITUDE, TANGENT),
+    ],
+)  # fmt: skip
+def test_shear_moduli_need_poissons_ratio(tmp_path, text):
+    path = tmp_path / "dma.csv"
+    path.write_text(text, encoding="utf-8")
+    for read, true in zip(read_dma(path, poisson=0.4), (HERTZ, STORAGE, LOSS), strict=True):
+        np.testing.assert_allclose(read, true, rtol=1e-10)
+    with pytest.raises(ValueError, match=r"^holds shear moduli: needs poisson, Poisson's ratio"):
+        read_dma(path)
+    with pytest.raises(ValueError, match=r"^poisson = 0\.6: must be above -1 and at most 0\.5$"):
+        read_dma(path, poisson=0.6)
+
+
+def test_poissons_ratio_is_that_of_the_sample_in_files(experiment, softafm):
+    text = table("f (Hz),G' (Pa),G'' (Pa)", HERTZ, SHEAR * STORAGE, SHEAR * LOSS)
+    (experiment / "dma.csv").write_text(text)
+    sample = load_experiment("rubber.toml", ["sample.poisson=0.4"]).contact.sample
+    assert sample.storage_modulus(HERTZ) == pytest.approx(STORAGE, rel=1e-6)
+    lines = python_lines(
+        document_from((experiment / "rubber.toml").read_text(), "rubber.toml"), experiment
+    )
+    assert "*sa.read_dma('dma.csv', poisson=0.49)" in lines.replace('"', "'")
+
+
+@pytest.mark.parametrize(
+    ("text", "reason"),
+    [
+        (table("frequency (1/s),E' (Pa),E'' (Pa)", HERTZ, STORAGE, LOSS),
+         "column 'frequency (1/s)' may be in Hz or in rad/s: write which of them"),
+        (table("omega (Hz),E' (Pa),E'' (Pa)", HERTZ, STORAGE, LOSS),
+         "column 'omega (Hz)' must name a unit of an angular frequency, not 'Hz'"),
+        (table("f,E' (Pa),E'' (Pa)", HERTZ, STORAGE, LOSS), "column 'f' has no unit"),
+        (table("T (K),E' (Pa),E'' (Pa)", HERTZ, STORAGE, LOSS), "has no column 'frequency'"),
+        (table("f (Hz),E' (Pa),G'' (Pa)", HERTZ, STORAGE, LOSS),
+         "has not two columns that belong together: it needs E' and E'', or G' and G'', or one"),
+        (table("f (Hz),E' (Pa)", HERTZ, STORAGE), "has not two columns that belong together"),
+        (table("f (Hz),tan δ", HERTZ, TANGENT), "has no column 'storage'"),
+        (table("f (Hz),E' (Pa),δ", HERTZ, STORAGE, PHASE), "column 'δ' has no unit"),
+        (table("f (Hz),E' (Pa),tan δ (%)", HERTZ, STORAGE, TANGENT),
+         "column 'tan δ (%)' must have no unit, not '%'"),
+        (table("f (Hz),|E*| (Pa),δ (rad)", HERTZ, STORAGE, np.degrees(PHASE)),
+         "δ[4] = 136.155 deg: must be above 0 and below 90"),
+        (table("f (Hz),E' (Pa),E'' (Pa),E\" (Pa)", HERTZ, STORAGE, LOSS, LOSS),
+         "has more than one column 'E''"),
+        # Two temperatures in one table.
+        (table("T (C),f (Hz),E' (Pa),E'' (Pa)", [25] * 21 + [60] * 21, np.tile(HERTZ, 2),
+               np.append(STORAGE, STORAGE / 2), np.append(LOSS, LOSS / 2)),
+         "storage is "),
+    ],
+)  # fmt: skip
+def test_tables_that_mean_two_things_are_refused(tmp_path, text, reason):
+    path = tmp_path / "dma.csv"
+    path.write_text(text, encoding="utf-8")
+    with pytest.raises(ValueError, match=f"^{re.escape(reason)}") as refused:
+        read_dma(path, poisson=0.4)
+    assert "\n" not in str(refused.value)

@@ -1,15 +1,11 @@
-"""Measured storage and loss moduli: read them, and compare them with a sample."""
+"""Measured storage and loss moduli, and how far a sample is from them."""
 
 import warnings
-from pathlib import Path
 
 import numpy as np
 
 from softafm.errors import AccuracyWarning
-from softafm.measured import read_columns
-from softafm.rheology.closest import refuse_impossible
 from softafm.rheology.lists import samples
-from softafm.units import FREQUENCY, MODULUS
 
 _MOST_POINTS, _MOST_DECADES = 2000, 30
 """What can be fitted in seconds."""
@@ -17,27 +13,6 @@ _POOR = 0.1
 """Largest relative misfit to measured moduli without a warning."""
 _REPEATED = 1.2
 """Largest ratio of storage moduli measured twice at one frequency."""
-
-
-def read_dma(path: str | Path) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Read frequency (Hz), storage and loss modulus (Pa) from a CSV file.
-
-    Parameters
-    ----------
-    path
-        CSV file whose header names the units, for example
-        ``frequency (Hz),storage (MPa),loss (MPa)``; other columns are ignored.
-
-    Raises
-    ------
-    ValueError
-        If the file cannot be read, lacks a column or a unit, or holds what no passive solid does.
-    """
-    columns = {"frequency": FREQUENCY, "storage": MODULUS, "loss": MODULUS}
-    example = "frequency (Hz),storage (MPa),loss (MPa)"
-    data = sort_moduli(*read_columns(path, columns, example))
-    refuse_impossible(*data)
-    return data
 
 
 def dma_misfit(sample, frequency, storage, loss) -> tuple[float, float]:
