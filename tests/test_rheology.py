@@ -12,7 +12,7 @@ from scipy.integrate import quad
 from scipy.special import erfcx
 from scipy.special import gamma as complex_gamma
 
-from softafm import AccuracyWarning
+from softafm import AccuracyWarning, samples
 from softafm.rheology import (
     Elastic,
     FractionalStandardLinearSolid,
@@ -57,6 +57,41 @@ def laplace(function, s):
         epsrel=1e-10,
     )
     return value
+
+
+EVERY = {
+    **{f"{sample.kind} {i}": sample for i, sample in enumerate(SAMPLES)},
+    "SLS by relaxation time": StandardLinearSolid.from_relaxation_time(2e9, 1e6, 1e-3, 0.49),
+    "SLS in shear": StandardLinearSolid.from_shear(1e9, 5e8, 1e-3, -0.2),
+    "SLS of one modulus": StandardLinearSolid(1e9, 1e9, 1e-3, 0.3),
+    "Kelvin-Voigt by viscosity": KelvinVoigt.from_viscosity(1e3, 10.0, 0.5),
+    "Kelvin-Voigt in shear": KelvinVoigt.from_shear(1e3, 10.0, 0.3),
+    "Maxwell by viscosity": Maxwell.from_viscosity(1e6, 1e3, 0.5),
+    "Maxwell in shear": Maxwell.from_shear(1e6, 1e3, 0.3),
+    "series in shear": GeneralizedMaxwell.from_shear(1e3, (1e6, 1e9), (1.0, 1e-4), 0.4),
+    "series by ratios": GeneralizedMaxwell.from_ratios(1e9, (0.9, 0.099), (1e-5, 1e-2), 0.4),
+    "series of equal times": GeneralizedMaxwell(1e6, (1e6, 2e6), (1e-3, 1e-3), 0.4),
+    "series by a fit": GeneralizedMaxwell.from_dma(
+        *([1.0, 10.0, 100.0], [1e6, 1.5e6, 3e6], [2e5, 6e5, 1e6]), poisson=0.4
+    ),
+    "springpot": PowerLaw.springpot(1e5, 0.7, (1e-4, 10.0), 0.5),
+    **{f"sample {name}": build() for name, build in samples.NAMED.items()},
+}
+"""Every class of samples, by each of its constructors, and the named ones."""
+
+NODES, WEIGHTS = np.polynomial.legendre.leggauss(20)
+
+
+def convolve(one, other, time):
+    """Return ∫ one(t − s) other(s) ds from 0 to t, by Gauss's rule in decades of either end.
+
+    The last decade is 1e-24 t: a spring of 1e6 E relaxes in 1e-6 of its creep time.
+    """
+    ends = np.log(time) + np.append(np.linspace(-24 * np.log(10), -np.log(10), 47), np.log(0.5))
+    half, middle = np.diff(ends) / 2, (ends[1:] + ends[:-1]) / 2
+    s = np.exp(middle[:, None] + half[:, None] * NODES)
+    near = one(time - s) * other(s) + one(s) * other(time - s)
+    return float(np.sum(half[:, None] * WEIGHTS * s * near))
 
 
 # Interconversion
@@ -133,6 +168,36 @@ def test_creep_and_relaxation_are_of_one_sample(sample, s):
     # s J(s) · s E(s) = 1, both by quadrature over time.
     product = laplace(sample.creep_compliance, s) * laplace(sample.relaxation_modulus, s)
     assert product == pytest.approx(1, rel=1e-6)
+
+
+@pytest.mark.parametrize("sample", EVERY.values(), ids=EVERY)
+@pytest.mark.parametrize("time", np.geomspace(1e-9, 1e3, 7))
+def test_relaxation_and_creep_convolve_to_the_time(sample, time):
+    # ∫ E(t − s) J(s) ds = t, the inverse of s E(s) · s J(s) = 1.
+    product = convolve(sample.relaxation_modulus, sample.creep_compliance, time)
+    assert product == pytest.approx(time, rel=1e-9)
+
+
+@pytest.mark.parametrize("sample", EVERY.values(), ids=EVERY)
+def test_what_is_stiff_at_once_yields_as_little(sample):
+    product = sample.relaxation_modulus(0.0) * sample.creep_compliance(0.0)
+    assert product == pytest.approx(1, rel=1e-12)
+
+
+def test_convolution_tells_a_modulus_that_is_only_the_inverse_of_the_compliance():
+    # 1/J(t) is not E(t), though it starts and ends as it does.
+    sample = EVERY["series in shear"]
+    product = convolve(lambda t: 1 / sample.creep_compliance(t), sample.creep_compliance, 1.0)
+    assert abs(product - 1) > 0.01
+
+
+@given(decades, decades, poisson)
+def test_the_dashpot_of_a_kelvin_voigt_solid_is_in_its_relaxation(E, creep_time, nu):
+    # E(t) = E + Eτ δ(t): what stands for the delta has its area, and is over by 1e-4 τ.
+    sample = KelvinVoigt(E, creep_time, nu)
+    area = convolve(sample.relaxation_modulus, np.ones_like, 1e-4 * creep_time)
+    assert area - 1e-4 * E * creep_time == pytest.approx(E * creep_time, rel=3e-6)
+    assert sample.relaxation_modulus(1e-4 * creep_time) == pytest.approx(E, rel=3e-6)
 
 
 @pytest.mark.parametrize("sample", SAMPLES, ids=lambda sample: sample.kind)
