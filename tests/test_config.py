@@ -1310,6 +1310,7 @@ def test_what_is_wrong_beside_a_good_file_is_not_blamed_on_it(load):
     anything,
 )
 @few
+@pytest.mark.filterwarnings("ignore::softafm.AccuracyWarning")  # it may be a sample, but a poor one
 def test_garbage_in_tips_samples_and_surfaces(load, built, value):
     (table, choice, keys, _), key = built
     for name, content in FILES.items():

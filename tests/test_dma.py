@@ -311,6 +311,35 @@ def test_every_run_of_a_sweep_tells_of_a_poor_fit(experiment, poor):
     assert all("differs from the measured moduli" in text for text in told)
 
 
+def test_maps_state_the_misfit_of_each_material():
+    fitted = GeneralizedMaxwell.from_dma(*measured(0.02), 0.49)
+    law = sa.Repulsion(pressure_at_zero=1e6, decay=1e-9)
+    contacts = [
+        sa.Contact(sa.Paraboloid(1e-6), sample, law) for sample in (fitted, sa.Elastic(1e9, 0.3))
+    ]
+    ramp = sa.Triangle(start=10e-9, turn=-1e-9, speed=1e-6)
+    image = sa.scan(sa.SampleMap(contacts, 20e-9, labels=[[0, 1]]), sa.ForceVolume(ramp))
+    assert "dma_misfit_rms" not in image.attrs
+    first, second = json.loads(image.attrs["experiment"])["materials"].values()
+    assert (first["dma_misfit_largest"], first["dma_misfit_rms"]) == fitted.dma_misfit
+    assert "dma_misfit_rms" not in second
+
+
+def test_files_with_ratios_that_leave_no_modulus_are_warned_of(experiment, softafm):
+    text = (experiment / "rubber.toml").read_text()
+    table = 'model = "generalized-maxwell"\nE0 = "1 GPa"\nratios = [0.4, 0.6]\n'
+    table += 'relaxation_times = ["1 ms", "1 s"]'
+    text = text.replace('model = "measured-moduli"\nfile = "dma.csv"', table)
+    (experiment / "ratios.toml").write_text(text)
+    code, out, err = softafm("info", "ratios.toml")
+    assert code == 0
+    assert "flow without end" in out
+    assert err.startswith(
+        "softafm: warning: ratios add up to 1, which leaves E_inf = 0 Pa, a liquid"
+    )
+    assert err.count("\n") == 1
+
+
 # Refusals
 
 
