@@ -1269,11 +1269,11 @@ def test_bad_tips_samples_and_surfaces(load, table, keys, line):
         ("tip", {"shape": "measured"}, "radius,height\n0,0\n",
          "column 'radius' has no unit: it must be that of a length"),
         ("sample", {"model": "measured-moduli", "poisson": 0.4},
-         "frequency (Hz),storage (MPa),loss (MPa)\n1,1,.1\n10,2,.1\n5,3,.1\n",
-         "frequency[2] = 5 Hz: must be above frequency[1] = 10 Hz"),
+         "frequency (Hz),storage (MPa),loss (MPa)\n10,1,.1\n1,1,.1\n10,2,.2\n",
+         "storage is 1e+06 and 2e+06 Pa at one frequency, 10 Hz: must be of one sample at one "),
         ("sample", {"model": "measured-moduli", "poisson": 0.4},
-         "frequency (Hz),storage (MPa),loss (MPa)\n1,1,.1\n10,2,.1\n50,1,.1\n",
-         "storage[2] = 1e+06 Pa at 50 Hz: must not fall more than 5 % below storage[1] = 2e+06 Pa"),
+         "frequency (Hz),storage (MPa),loss (MPa)\n1,4,.1\n10,3,.1\n100,2,.1\n1000,1,.1\n",
+         "storage = 4e+06 Pa at 1 Hz: no linear passive solid has this beside the other moduli, "),
         ("sample", {"model": "measured-moduli", "poisson": 0.4},
          "frequency (Hz),storage (MPa),loss (MPa)\n1,1,.1\n10,2,-0.1\n",
          "loss[1] = -100000 Pa: must be finite and greater than 0"),
@@ -1310,6 +1310,7 @@ def test_what_is_wrong_beside_a_good_file_is_not_blamed_on_it(load):
     anything,
 )
 @few
+@pytest.mark.filterwarnings("ignore::softafm.AccuracyWarning")  # it may be a sample, but a poor one
 def test_garbage_in_tips_samples_and_surfaces(load, built, value):
     (table, choice, keys, _), key = built
     for name, content in FILES.items():

@@ -422,9 +422,13 @@ def _interrupted() -> int:
 
 @contextmanager
 def _bad_input() -> Iterator[None]:
-    """Report what is refused inside as bad input; a run does not belong inside."""
+    """Report what is refused inside as bad input, and what is warned of in one line each.
+
+    A run does not belong inside.
+    """
     try:
-        yield
+        with _visible_warnings():
+            yield
     except (ValueError, OSError) as error:
         raise _BadInput(str(error)) from error
 
@@ -535,17 +539,19 @@ def _heeding_interrupts() -> Iterator[Callable[[], None]]:
 
 @contextmanager
 def _visible_warnings() -> Iterator[None]:
-    """Print warnings about the result as one line each; leave all others as they are."""
+    """Print warnings about the result as one line each, once; leave all others as they are."""
     from softafm import AccuracyWarning
 
     with warnings.catch_warnings():
         warnings.simplefilter("always", AccuracyWarning)
-        usual = warnings.showwarning
+        usual, told = warnings.showwarning, set()
 
         def show(message, category, *place, **options):
             if issubclass(category, AccuracyWarning):
                 text = " ".join(str(message).split())
-                print(f"softafm: warning: {text}", file=sys.stderr)
+                if text not in told:
+                    print(f"softafm: warning: {text}", file=sys.stderr)
+                told.add(text)
             else:
                 usual(message, category, *place, **options)
 

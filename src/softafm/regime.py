@@ -12,7 +12,7 @@ from softafm.motions import lowest_height
 from softafm.results import edge_slowed
 from softafm.rheology.represented import Represented
 from softafm.solvers.energy import Energy, cohesive_lengths_crossed
-from softafm.summary import regularised_in_words, slowed_in_words, table_of
+from softafm.summary import misfit_in_words, regularised_in_words, slowed_in_words, table_of
 from softafm.tips import Paraboloid
 from softafm.units import readable
 
@@ -187,6 +187,8 @@ def _add_sample(found: list[Row], contact: "Contact", duration: float, whole: st
     fast, late = (readable(1 / float(sample.creep_compliance(t)), "Pa") for t in (0, duration))
     softer = f"; {late} after the {whole}" if times.size or creep.fluidity else ""
     found.append(Row("Young's modulus", fast, sample.kind + softer))
+    if sample.dma_misfit:
+        found.append(Row(*misfit_in_words(*sample.dma_misfit)))
     if isinstance(sample, Represented):
         ends = " to ".join(readable(time, "s") for time in sample.window)
         words = f"to {100 * sample.represented_error:.2g} %, from {ends}"

@@ -189,6 +189,13 @@ def edge_slowed(given, longer: float) -> float:
     return (longer / given.surface.range) ** 2 if rate_matters else 1.0
 
 
+def misfit_attributes(sample) -> dict[str, float]:
+    """Return how well a sample fits the measured moduli it was fitted to; {} for all others."""
+    if sample.dma_misfit is None:
+        return {}
+    return dict(zip(("dma_misfit_largest", "dma_misfit_rms"), sample.dma_misfit, strict=True))
+
+
 def _provenance(mode, contact, parts, solver, tolerance, warnings, diagnostics) -> dict:
     """Return the attributes of a result: its whole input, and how it was computed."""
     things = {"tip": contact.tip, "sample": contact.sample, "surface": contact.surface, **parts}
@@ -207,6 +214,7 @@ def _provenance(mode, contact, parts, solver, tolerance, warnings, diagnostics) 
         "tabor_instantaneous": contact.tabor_instantaneous,
         "tabor_relaxed": contact.tabor_relaxed,
         "cohesive_length": contact.cohesive_length,
+        **misfit_attributes(contact.sample),
         "warnings": "\n".join(warnings),
         **{f"solver_{name}": value for name, value in diagnostics.items()},
     }

@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from softafm.rheology.dma import checked
+from softafm.rheology.dma import sort_moduli
 from softafm.rheology.interconversion import chain_to_prony
 from softafm.rheology.lists import window_of
 from softafm.rheology.represented import Represented
@@ -49,7 +49,7 @@ def plot_rheology(
     from matplotlib.figure import Figure
     from matplotlib.layout_engine import ConstrainedLayoutEngine
 
-    measured = None if data is None else checked(*data)
+    measured = None if data is None else sort_moduli(*data)
     shortest, longest = times_of(sample, measured) if window is None else window_of(window)
     time = np.geomspace(shortest, longest, SAMPLES)
     figure = Figure(figsize=(10.4, 4.2), dpi=150, layout=ConstrainedLayoutEngine(wspace=0.06))

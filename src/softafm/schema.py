@@ -72,8 +72,8 @@ from softafm.rheology import (
     Maxwell,
     PowerLaw,
     StandardLinearSolid,
-    read_dma,
 )
+from softafm.rheology.dma_table import DynamicModuli, read_moduli
 from softafm.samples import NAMED
 from softafm.solvers.attard import Attard
 from softafm.solvers.energy import Energy
@@ -441,10 +441,11 @@ def tabulated(file: SurfaceLaw) -> SurfaceLaw:
     return file
 
 
-def measured_moduli(file: list, poisson: float, per_decade: float = 2.0) -> GeneralizedMaxwell:
-    """Fit moduli that ``read_dma`` read, as ``GeneralizedMaxwell.from_dma``."""
-    frequency, storage, loss = file
-    return GeneralizedMaxwell.from_dma(frequency, storage, loss, poisson, per_decade)
+def measured_moduli(
+    file: DynamicModuli, poisson: float, per_decade: float = 2.0
+) -> GeneralizedMaxwell:
+    """Fit moduli that ``read_moduli`` read, as ``GeneralizedMaxwell.from_dma``."""
+    return GeneralizedMaxwell.from_dma(*file.young(poisson), poisson, per_decade)
 
 
 class SumSurface(Table):
@@ -492,7 +493,7 @@ CHOICES: dict[str, tuple[str, dict[str, type[Table]]]] = {
             ),
             "power-law": _thing(PowerLaw),
             "fractional-standard-linear-solid": _thing(FractionalStandardLinearSolid),
-            "measured-moduli": _thing(measured_moduli, file=read_dma),
+            "measured-moduli": _thing(measured_moduli, file=read_moduli),
             **{name: _thing(sample) for name, sample in NAMED.items()},
         },
     ),

@@ -34,6 +34,10 @@ def observables(dataset: "Dataset") -> Table:
         _add_branches(table, dataset)
     if "check_largest" in dataset.attrs:
         _add_check(table, dataset.attrs, differences)
+    if "dma_misfit_largest" in dataset.attrs:
+        attributes = dataset.attrs
+        row = misfit_in_words(attributes["dma_misfit_largest"], attributes["dma_misfit_rms"])
+        table.add_row(*row)
     if "regularised_range" in dataset.attrs:
         words = regularised_in_words(
             *(dataset.attrs[name] for name in ("given_tabor", "given_range", "regularised_range"))
@@ -121,6 +125,12 @@ def regularised_in_words(tabor: float, before: float, length: float) -> str:
         return f"of the law; a Tabor number of {tabor:.3g} needs no other"
     was = f"it was {readable(before, 'm')} at a Tabor number of {tabor:.3g}"
     return f"of the law, regularised; {was}"
+
+
+def misfit_in_words(largest: float, rms: float) -> tuple[str, str, str]:
+    """Return a row that tells how well a sample fits the measured moduli it was fitted to."""
+    words = f"from the measured moduli, at most; {100 * rms:.2g} % in the mean square"
+    return "fit off by", f"{100 * largest:.2g} %", words
 
 
 def table_of(title: str) -> Table:

@@ -34,6 +34,7 @@ class Kind:
 LENGTH = Kind("a length", "m", "10 nm")
 TIME = Kind("a time", "s", "0.1 us")
 SPEED = Kind("a speed", "m/s", "5 um/s")
+ANGULAR_FREQUENCY = Kind("an angular frequency", "rad/s", "10 rad/s")
 FREQUENCY = Kind("a frequency", "Hz", "278 kHz")
 MODULUS = Kind("a modulus", "Pa", "2 GPa")
 PRESSURE = Kind("a pressure", "Pa", "100 MPa")

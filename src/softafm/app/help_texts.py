@@ -39,7 +39,7 @@ _STANDS_FOR: dict[Any, tuple[Callable, ...]] = {
     schema.Run: (force_distance,),
     schema.SumSurface: (SumOfLaws,),
     schema.measured_tip: (read_tip_profile,),
-    schema.measured_moduli: (read_dma, GeneralizedMaxwell.from_dma, GeneralizedMaxwell),
+    schema.measured_moduli: (GeneralizedMaxwell.from_dma, GeneralizedMaxwell, read_dma),
     schema.tabulated: (read_law,),
 }
 """What tells the meaning of the keys of hand-written tables, and of functions that build."""

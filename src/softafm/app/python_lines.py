@@ -78,7 +78,8 @@ def _sample(sample: Any, written: Mapping[str, Any]) -> str:
         given = [
             f"{key}={_value(written[key])}" for key in ("poisson", "per_decade") if key in written
         ]
-        moduli = f"*sa.read_dma({_value(written['file'])})"
+        read = [_value(written["file"]), f"poisson={_value(written['poisson'])}"]
+        moduli = f"*{_call('sa.read_dma', read)}"
         return _call("sa.GeneralizedMaxwell.from_dma", [moduli, *given])
     return _source(sample)
 

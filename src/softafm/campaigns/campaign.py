@@ -3,6 +3,7 @@
 import hashlib
 import inspect
 import json
+import warnings
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import lru_cache
@@ -18,6 +19,7 @@ from softafm.campaigns.designs import Design
 from softafm.campaigns.fields import Keys, keys_of, replaced
 from softafm.config import build_table, experiment_from
 from softafm.contact import Contact
+from softafm.errors import AccuracyWarning
 from softafm.refusals import ConfigError, nearest, shown
 from softafm.results import VARIABLES
 
@@ -139,14 +141,20 @@ def _kept(contact: Contact) -> Contact:
 
 
 def _kept_table(name: str, document: Mapping[str, Any], mode: Any, folder: Path) -> Any:
-    """Return what a table describes, the same object for equal tables."""
-    return _table(name, json.dumps(document.get(name)), mode, folder)
+    """Return what a table describes, the same object for equal tables; it warns each time."""
+    thing, told = _table(name, json.dumps(document.get(name)), mode, folder)
+    for text in told:
+        warnings.warn(text, AccuracyWarning, stacklevel=2)
+    return thing
 
 
 @lru_cache(maxsize=256)
-def _table(name: str, written: str, mode: Any, folder: Path) -> Any:
+def _table(name: str, written: str, mode: Any, folder: Path) -> tuple[Any, tuple[str, ...]]:
     content = json.loads(written)
-    return build_table(name, {} if content is None else {name: content}, mode, folder)
+    with warnings.catch_warnings(record=True) as told:
+        warnings.simplefilter("always", AccuracyWarning)
+        thing = build_table(name, {} if content is None else {name: content}, mode, folder)
+    return thing, tuple(str(warning.message) for warning in told)
 
 
 @lru_cache(maxsize=64)

@@ -18,7 +18,7 @@ from softafm.campaigns.sample_map import SampleMap
 from softafm.errors import AccuracyWarning
 from softafm.modes.start import refuse_start_inside, refuse_steady_flow, refuse_unable
 from softafm.progress import Progress, reporting
-from softafm.results import curve_dataset, describe
+from softafm.results import curve_dataset, describe, misfit_attributes
 from softafm.solvers.energy import Energy
 
 if TYPE_CHECKING:
@@ -257,11 +257,13 @@ def _dataset(sample, imaging, solver, tolerance, names, values, warned, done) ->
             "flag_values": [0.0, 1.0],
             "flag_meanings": "attractive repulsive",
         }
-    for name in ("tabor_instantaneous", "tabor_relaxed", "cohesive_length"):
+    of_one = ("tabor_instantaneous", "tabor_relaxed", "cohesive_length")
+    for name in (*of_one, *misfit_attributes(sample.materials[0].sample)):
         del result.attrs[name]  # there is not one of them
     result.attrs["different_pixels"] = len(sample.pixels.contacts)
     return result
 
 
 def _described(contact) -> dict:
-    return {name: describe(getattr(contact, name)) for name in ("tip", "sample", "surface")}
+    parts = {name: describe(getattr(contact, name)) for name in ("tip", "sample", "surface")}
+    return {**parts, **misfit_attributes(contact.sample)}

@@ -6,7 +6,8 @@ times 1 − ν² (Rajabifar et al. 2021, equations 4 and 9).
 """
 
 from softafm.rheology.compliance import ReducedCompliance
-from softafm.rheology.dma import dma_misfit, read_dma
+from softafm.rheology.dma import dma_misfit
+from softafm.rheology.dma_table import read_dma
 from softafm.rheology.elastic import Elastic
 from softafm.rheology.fractional import FractionalStandardLinearSolid
 from softafm.rheology.interconversion import chain_to_prony, prony_to_chain

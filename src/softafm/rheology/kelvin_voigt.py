@@ -20,7 +20,8 @@ class KelvinVoigt(Solid):
 
     It has no instantaneous response, which the contact problem needs to have shapes at all: a
     spring of 10⁶ E stands in series, so compliances are high by 1e-6/E, and what happens faster
-    than about 1e-6 τ is not that of the ideal solid.
+    than about 1e-6 τ is not that of the ideal solid. Its relaxation modulus E + Eτ δ(t) becomes
+    E + 10⁶ E exp(−10⁶ t/τ), nearly: ``relaxation_modulus`` is E from 3e-5 τ on.
 
     Parameters
     ----------

@@ -1,5 +1,6 @@
 """Samples built from springs with dashpots behind them: a Prony series of the modulus."""
 
+import warnings
 from dataclasses import dataclass
 from functools import cached_property
 from math import fsum
@@ -8,11 +9,16 @@ from typing import ClassVar
 import numpy as np
 
 from softafm._validate import finite, poisson_ratio, positive
+from softafm.errors import AccuracyWarning
 from softafm.rheology.compliance import ReducedCompliance
-from softafm.rheology.dma import fit_prony
+from softafm.rheology.dma import dma_misfit, warn_of_misfit
 from softafm.rheology.interconversion import prony_to_chain
 from softafm.rheology.lists import as_many, positives
+from softafm.rheology.prony_fit import fit_prony
 from softafm.rheology.solid import Solid
+
+_ROUND_OFF, _NONE_LEFT = 1e-12, 1e-6
+"""E_inf/E0 that counts as zero, and what is too little to have been meant."""
 
 
 @dataclass(frozen=True)
@@ -149,7 +155,8 @@ class GeneralizedMaxwell(Solid):
     ) -> "GeneralizedMaxwell":
         """Build from a normalised series, E_k = ratio_k·E0, E_inf = (1 − Σ ratios)·E0.
 
-        Finite-element programs state materials so.
+        Finite-element programs state materials so. Ratios that add up to 1 leave no E_inf, and warn
+        (``AccuracyWarning``): some fitting programs normalise those of every solid so.
 
         Parameters
         ----------
@@ -161,29 +168,53 @@ class GeneralizedMaxwell(Solid):
         E0 = positive("E0", E0, "Pa")
         ratios = positives("ratios", ratios, "(no unit)", zeros=True)
         rest = 1 - fsum(ratios)
-        if rest < -1e-12:
+        if rest < -_ROUND_OFF:
             raise ValueError(
                 f"ratios add up to {fsum(ratios):.10g}: must add up to at most 1, "
                 "for what remains is E_inf/E0"
             )
-        E_inf = E0 * rest if rest > 1e-12 else 0.0
+        E_inf = E0 * rest if rest > _ROUND_OFF else 0.0
+        if rest < _NONE_LEFT:
+            warnings.warn(
+                f"ratios add up to {fsum(ratios):.10g}, which leaves E_inf = {E_inf:g} Pa, a "
+                "liquid. Programs that normalise ratios to 1 make one of every solid. State it by "
+                "moduli and E_inf, which is 0 Pa if it flows indeed",
+                AccuracyWarning,
+                stacklevel=2,
+            )
         return cls(E_inf, tuple(E0 * ratio for ratio in ratios), relaxation_times, poisson)
 
     @classmethod
     def from_dma(
         cls, frequency, storage, loss, poisson: float, per_decade: float = 2
     ) -> "GeneralizedMaxwell":
-        """Fit measured Young's moduli: frequency (Hz, rising), storage and loss modulus (Pa).
+        """Fit measured Young's moduli by a series of as few terms as their noise tells apart.
 
-        Non-negative least squares of the relative misfit; ``softafm.rheology.dma_misfit`` tells how
-        well the result fits. Beyond the measured frequencies the fit is an extrapolation.
+        The misfit stays with the sample, as ``dma_misfit``; one above 10 % gives
+        an ``AccuracyWarning``. Beyond the measured frequencies the fit is an extrapolation.
 
         Parameters
         ----------
+        frequency
+            Measured frequencies, Hz, in any order.
+        storage, loss
+            Storage and loss modulus, Pa, as many.
         per_decade
-            Relaxation times for each decade of frequency, 0.5 to 10.
+            Relaxation times a decade, at most, from which the fit begins; 0.5 to 10.
+
+        Raises
+        ------
+        ValueError
+            If the data are not such, or no linear passive solid can have them.
+
+        References
+        ----------
+        ``softafm.rheology.prony_fit`` tells the method.
         """
-        return cls(*fit_prony(frequency, storage, loss, per_decade), poisson)
+        sample = cls(*fit_prony(frequency, storage, loss, per_decade), poisson)
+        object.__setattr__(sample, "dma_misfit", dma_misfit(sample, frequency, storage, loss))
+        warn_of_misfit(sample, frequency, storage, loss)
+        return sample
 
     @cached_property
     def reduced_compliance(self) -> ReducedCompliance:

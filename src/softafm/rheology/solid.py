@@ -17,6 +17,8 @@ class Solid(ABC):
 
     kind: ClassVar[str]
     poisson: float
+    dma_misfit: tuple[float, float] | None = None
+    """Largest and root mean square relative misfit to the measured moduli it was fitted to."""
 
     @property
     @abstractmethod
