@@ -102,7 +102,7 @@ def test_files_that_are_no_good_are_refused(page, name, content, reason):
 
 def test_a_result_that_cannot_be_drawn_is_refused(page, tap):
     page.answer(sent("a.nc", netcdf_bytes(tap.drop_vars("tip_height"))))
-    assert words(page)[0].startswith("a.nc: a result that cannot be drawn")
+    assert words(page)[0].startswith("a.nc: variable 'tip_height' is missing")
     assert page.session.entries == []
 
 

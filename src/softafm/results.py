@@ -196,6 +196,40 @@ def load(path, *, largest: float = LARGEST) -> "Dataset":
         raise ValueError(f"{path}: {problem}") from None
 
 
+def load_apart(path, *, largest: float = LARGEST, seconds: float | None = None) -> "Dataset":
+    """Read a result of someone else, as ``load`` does, in a process of its own.
+
+    A damaged file that makes the reading go on for ever, or end its process, harms no one then.
+
+    Parameters
+    ----------
+    path, largest
+        As for ``load``.
+    seconds
+        Time after which the reading is ended, s; by default ``softafm.guard.seconds_for``.
+
+    Raises
+    ------
+    FileNotFoundError, ValueError
+        As ``load``, and ValueError if the file cannot be read in that time.
+    """
+    from softafm.guard import read_apart, seconds_for
+
+    if not Path(path).is_file():
+        raise FileNotFoundError(f"{path}: no such file")
+    try:
+        found = read_apart(
+            "softafm.result_files:read",
+            str(path),
+            int(largest),
+            seconds=seconds_for(path) if seconds is None else seconds,
+            largest=int(largest),
+        )
+        return result_of(*found)
+    except ValueError as problem:
+        raise ValueError(f"{path}: {problem}") from None
+
+
 def result_of(content: "Content", arrays: Sequence[np.ndarray]) -> "Dataset":
     """Return the result that ``softafm.result_files.read`` found in a file.
 
