@@ -11,7 +11,7 @@ from softafm import units
 from softafm._validate import finite, poisson_ratio, positive, tabor_of, tolerance_of, whole
 from softafm.refusals import one_of
 
-_MOST_RATIOS = 1000
+_MOST_ENTRIES = 1000
 _MOST_PIXELS = 4096
 
 
@@ -78,9 +78,9 @@ def _cycles(written: Any) -> int | str:
 
 def _points(written: Any) -> int:
     try:
-        return whole("points", written, 2, _MOST_RATIOS)
+        return whole("points", written, 2, _MOST_ENTRIES)
     except ValueError:
-        raise ValueError(f"must be a whole number from 2 to {_MOST_RATIOS}") from None
+        raise ValueError(f"must be a whole number from 2 to {_MOST_ENTRIES}") from None
 
 
 def _ratio(written: Any) -> float:
@@ -88,12 +88,6 @@ def _ratio(written: Any) -> float:
     if not 0 < number < 1:
         raise ValueError("must be above 0 and below 1")
     return number
-
-
-def _ratios(written: Any) -> Any:
-    if isinstance(written, list) and len(written) > _MOST_RATIOS:
-        raise ValueError(f"has {len(written)} entries: must have at most {_MOST_RATIOS}")
-    return _list(written)
 
 
 def _whole(written: Any) -> int:
@@ -122,6 +116,8 @@ def choice_of(choices: Mapping[str, Any]) -> Any:
 def _list(written: Any) -> Any:
     if not isinstance(written, list) or not written:
         raise ValueError("must be a list, in square brackets, with at least one entry")
+    if len(written) > _MOST_ENTRIES:
+        raise ValueError(f"has {len(written)} entries: must have at most {_MOST_ENTRIES}")
     return tuple(written)
 
 
@@ -189,7 +185,7 @@ QualityFactor = Annotated[
     float, *_described(_number, "a number, such as 430", Input("number", "430"))
 ]
 Ratio = Annotated[float, BeforeValidator(_ratio), Input("number", "0.9")]
-Ratios = Annotated[tuple[Ratio, ...], BeforeValidator(_ratios), Input("list", "0.9")]
+Ratios = Annotated[tuple[Ratio, ...], BeforeValidator(_list), Input("list", "0.9")]
 Points = Annotated[int, BeforeValidator(_points), Input("number", "31")]
 Cycles = Annotated[int | Literal["steady"], BeforeValidator(_cycles), Input("word", "steady")]
 Flag = Annotated[bool, BeforeValidator(_flag), Input("flag")]

@@ -9,6 +9,7 @@ if TYPE_CHECKING:
     from pydantic import BaseModel
 
 _LONGEST_SHOWN = 60
+_MOST_TOLD = 50
 _OTHER_NAMES = {
     "W": ("work_of_adhesion",),
     "E0": ("G0",),
@@ -23,7 +24,10 @@ class ConfigError(ValueError):
     """An experiment file or an override that cannot be used: one line for each problem."""
 
     def __init__(self, problems: Sequence[str]):
-        super().__init__("\n".join(_one_line(problem) for problem in problems))
+        lines = [_one_line(problem) for problem in problems[:_MOST_TOLD]]
+        if len(problems) > _MOST_TOLD:
+            lines.append(f"and {len(problems) - _MOST_TOLD} more like these")
+        super().__init__("\n".join(lines))
 
 
 def problems(name: str, model: "type[BaseModel]", error: Any, valid: list[str]) -> list[str]:
