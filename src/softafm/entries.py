@@ -1,6 +1,8 @@
 """How values are written in an experiment file: types that read text, units and lists."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager
+from contextvars import ContextVar
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated, Any, Literal
@@ -121,11 +123,26 @@ def _list(written: Any) -> Any:
     return tuple(written)
 
 
+_reading: ContextVar[Callable[[Callable[[Path], Any], Path], Any]] = ContextVar(
+    "reading", default=lambda read, path: read(path)
+)
+
+
+@contextmanager
+def files_read_by(reading: Callable[[Callable[[Path], Any], Path], Any]) -> Iterator[None]:
+    """Have ``reading(read, path)`` called inside for every CSV file in place of ``read(path)``."""
+    before = _reading.set(reading)
+    try:
+        yield
+    finally:
+        _reading.reset(before)
+
+
 def file_of(read: Callable[[Path], Any]) -> tuple[Any, ...]:
     """Return the marks of a type that reads the name of a CSV file as what the file holds."""
 
     def held(written: Any, info: ValidationInfo) -> Any:
-        return read(_file(written, info))
+        return _reading.get()(read, _file(written, info))
 
     return _described(held, "the name of a CSV file", Input("file", "approach.csv"))
 
