@@ -310,7 +310,9 @@ def unit(name, units):
         ("approach-curve", value("phase", (0, 0), np.nan), None),
         ("force-distance", lambda r: r.assign_coords(time=("time", -r["time"].values,
          r["time"].attrs)), "variable 'time' must rise"),
-        ("force-distance", lambda r: r.isel(time=slice(1)), "'time' has 1 values: must have 2"),
+        ("with shapes", lambda r: r.interp(r=np.linspace(0, 1e-9, 20_001)).assign_coords(
+         r=("r", np.linspace(0, 1e-9, 20_001), r["r"].attrs)), "must have 2 to 20000"),
+        ("force-distance", lambda r: r.isel(time=slice(1)), "'time' has 1 values: must have 2 to"),
         ("force-distance", lambda r: r.assign(force=r["force"].mean(keep_attrs=True)),
          "variable 'force' is over (): must be over (time)"),
         ("force-distance", lambda r: r.assign(force=("time", np.full(r.sizes["time"], "1"),

@@ -143,8 +143,10 @@ def _refuse_variable(
     if tuple(found) != dimensions:
         told = ", ".join(dimensions)
         raise ValueError(f"variable '{name}' is over ({', '.join(found)}): must be over ({told})")
-    if name in SAMPLES and values.size < SAMPLES[name]:
-        raise ValueError(f"variable '{name}' has {values.size} values: must have {SAMPLES[name]}")
+    least, most = SAMPLES.get(name, (0, values.size))
+    if not least <= values.size <= most:
+        told = f"must have {least} to {most}"
+        raise ValueError(f"variable '{name}' has {values.size} values: {told}")
     if name == "branch":
         if sorted(map(str, values)) != sorted(BRANCHES):
             raise ValueError(f"variable 'branch' must hold {one_of(BRANCHES)}, each once")
@@ -152,11 +154,11 @@ def _refuse_variable(
     if values.dtype.kind not in "fiu":
         raise ValueError(f"variable '{name}' holds {shown(values.dtype.name)}: must hold numbers")
     units = unit_of(name)
-    most = _LARGEST.get(str(units), _LARGEST_BY_DEFAULT)
+    largest = _LARGEST.get(str(units), _LARGEST_BY_DEFAULT)
     numbers = values[~np.isnan(values)] if gaps else values
-    wrong = ~(np.abs(numbers) <= most)
+    wrong = ~(np.abs(numbers) <= largest)
     if wrong.any():
         value = numbers[wrong][0]
-        raise ValueError(f"variable '{name}' holds {value:g} {units}: must be within {most:g}")
+        raise ValueError(f"variable '{name}' holds {value:g} {units}: must be within {largest:g}")
     if name in RISING and not (np.diff(values) > 0).all():
         raise ValueError(f"variable '{name}' must rise from value to value")

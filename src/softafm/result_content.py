@@ -73,8 +73,15 @@ PROFILES: dict[str, tuple[str, ...]] = dict.fromkeys(
 """Dimensions of the shapes of the surface; a result holds all of them or none."""
 RISING = ("time", "r", "x", "y")
 """Coordinates whose values rise from each to the next."""
-SAMPLES = {"time": 2, "r": 2, "x": 1, "y": 1, "amplitude_ratio": 1}
-"""How many values a coordinate has at least."""
+SAMPLES = {
+    "time": (2, 10**9),
+    "r": (2, 20_000),
+    "x": (1, 100_000),
+    "y": (1, 100_000),
+    "amplitude_ratio": (1, 100_000),
+    "sweep_height": (0, 10_000),
+}
+"""How many values a coordinate has, at least and at most; movies and arrows are made of them."""
 REGULARISED = ("regularised_range", "given_tabor", "given_range", "edge_slowed")
 """Attributes, all numbers, of a result whose law had its range enlarged."""
 
