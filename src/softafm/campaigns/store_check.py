@@ -1,7 +1,7 @@
 """Whether a folder is the store of a sweep as ``softafm`` writes it, before any of it is used.
 
-A Zarr store names the code that decodes it, pickles among it, and the places of its parts: nothing
-that a sweep does not write is handed on, neither to Zarr nor to xarray.
+A Zarr store names the code that decodes it, and the places of its parts: nothing that a sweep does
+not write is handed on, neither to Zarr nor to xarray.
 """
 
 import json
