@@ -37,6 +37,14 @@ def sent(name, content):
     return {"open": name, "content": base64.b64encode(content).decode()}
 
 
+def open_file(page, name, content):
+    """Send a file and wait until it was read."""
+    page.answer(sent(name, content))
+    while page._file is not None:
+        time.sleep(0.02)
+        page.answer({})
+
+
 def words(page):
     return page._bar.state["words"], page._bar.state["bad"]
 
@@ -71,9 +79,9 @@ def test_what_cannot_run_is_not_run(page):
 
 
 def test_files_are_opened(page, tap):
-    page.answer(sent("curve.toml", toml_text(CURVE).encode()))
+    open_file(page, "curve.toml", toml_text(CURVE).encode())
     assert page.form.document == CURVE
-    page.answer(sent("tap.NC", netcdf_bytes(tap)))
+    open_file(page, "tap.NC", netcdf_bytes(tap))
     assert list(page.results) == ["1 tap"]
     assert page._tabs._names[1:] == ["Force–distance", "Time", "Numbers", "Take away"]
     page.answer({"end": page.session.entries[0].id})
@@ -90,7 +98,7 @@ def test_files_are_opened(page, tap):
     ],
 )
 def test_files_that_are_no_good_are_refused(page, name, content, reason):
-    page.answer(sent(name, content))
+    open_file(page, name, content)
     said, bad = words(page)
     assert reason in said
     assert bad
@@ -101,8 +109,8 @@ def test_files_that_are_no_good_are_refused(page, name, content, reason):
 
 
 def test_a_result_that_cannot_be_drawn_is_refused(page, tap):
-    page.answer(sent("a.nc", netcdf_bytes(tap.drop_vars("tip_height"))))
-    assert words(page)[0].startswith("a.nc: a result that cannot be drawn")
+    open_file(page, "a.nc", netcdf_bytes(tap.drop_vars("tip_height")))
+    assert words(page)[0].startswith("a.nc: variable 'tip_height' is missing")
     assert page.session.entries == []
 
 

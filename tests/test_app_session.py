@@ -39,6 +39,10 @@ def session(idle, tmp_path):
     return Session(idle, tmp_path, Limits(listed=3, run_seconds=60, upload_bytes=1_000_000))
 
 
+def uploaded(session, name, content):
+    return session.add(name, session.read(name, content).result())
+
+
 def test_runs_are_listed_named_and_coloured_and_can_be_removed(session):
     first = session.run(TAP, "tap", 1.0)
     second = session.run(TAP, "tap", None)
@@ -74,8 +78,8 @@ def test_what_is_too_much_is_refused(session, idle, tmp_path, tap):
     session.run(TAP, "tap", None)
     with pytest.raises(ValueError, match="2 of your runs are waiting already"):
         session.run(TAP, "tap", None)
-    session.upload("tap.nc", netcdf_bytes(tap))
-    for more in (lambda: session.run(TAP, "tap", None), lambda: session.upload("a.nc", b"")):
+    uploaded(session, "tap.nc", netcdf_bytes(tap))
+    for more in (lambda: session.run(TAP, "tap", None), lambda: session.read("a.nc", b"")):
         with pytest.raises(ValueError, match="3 runs are listed, as many as may be"):
             more()
     other = Session(idle, tmp_path, Limits())
@@ -85,17 +89,19 @@ def test_what_is_too_much_is_refused(session, idle, tmp_path, tap):
 def test_results_of_a_user_take_a_bounded_memory(idle, tmp_path, tap):
     content = netcdf_bytes(tap)
     small = Session(idle, tmp_path, Limits(kept_bytes=tap.nbytes + 1))
-    small.upload("tap.nc", content)
-    small.upload("tap.nc", content)
+    uploaded(small, "tap.nc", content)
+    uploaded(small, "tap.nc", content)
     with pytest.raises(ValueError, match="MB of memory: remove some first"):
-        small.upload("tap.nc", content)
+        uploaded(small, "tap.nc", content)
     many = xr.Dataset({"force": ("time", np.zeros(3_000_000))}, attrs=tap.attrs)
     many["force"].encoding = {"zlib": True}
     path = tmp_path / "bomb.nc"
     many.to_netcdf(path, engine="h5netcdf")
     assert path.stat().st_size < 100_000
     with pytest.raises(ValueError, match=r"bomb.nc: has 24 MB unpacked: at most 5 MB"):
-        Session(idle, tmp_path, Limits(kept_bytes=5_000_000)).upload("bomb.nc", path.read_bytes())
+        uploaded(
+            Session(idle, tmp_path, Limits(kept_bytes=5_000_000)), "bomb.nc", path.read_bytes()
+        )
 
 
 def test_a_result_that_is_too_large_is_not_sent(tap):
@@ -119,7 +125,7 @@ def test_a_process_has_bounded_memory():
 
 def test_an_upload_is_the_result_and_shows_what_is_doubtful(session, tap):
     doubtful = tap.assign_attrs(warnings="too <b>coarse</b>")
-    entry = session.upload("soft tap.nc", netcdf_bytes(doubtful))
+    entry = uploaded(session, "soft tap.nc", netcdf_bytes(doubtful))
     assert (entry.label, entry.state, entry.over) == ("1 soft tap", "done", True)
     assert entry.warnings == ("too <b>coarse</b>",)
     xr.testing.assert_identical(entry.result, doubtful)
@@ -130,7 +136,7 @@ def test_an_upload_is_the_result_and_shows_what_is_doubtful(session, tap):
         ("a.nc", bytes(1_000_001), "the file has 1.0 MB: at most 1 MB"),
     ):
         with pytest.raises(ValueError, match=words.replace("(", r"\(")):
-            session.upload(name, content)
+            uploaded(session, name, content)
 
 
 def test_what_comes_from_users_is_escaped(tap):

@@ -128,11 +128,20 @@ def test_laws_are_added_to_a_sum(form):
     assert form._fields.state["texts"]["surface.parts[0].decay"] == "1 nm"
 
 
+def settle(form):
+    """Wait until the form knows what its files hold."""
+    while form.reading:
+        time.sleep(0.02)
+        form.look()
+
+
 def test_an_uploaded_file_is_named_in_the_document(form, tmp_path):
     form.choose("tip", "measured")
     form.upload("tip.file", "../../my tip.csv", TIP.encode())
     assert form.document["tip"] == {"shape": "measured", "file": "my_tip.csv"}
     assert (tmp_path / "my_tip.csv").read_text(encoding="utf-8") == TIP
+    assert form.problems == {"tip.file": "is being read ..."}
+    settle(form)
     assert form.problems == {}
     form.largest_upload = 10
     form.upload("tip.file", "tip.csv", b"x" * 11)
@@ -185,6 +194,7 @@ def served():
 
     def page():
         forms.append(Form(TAP))
+        pn.state.add_periodic_callback(forms[-1].look, 100)  # as the page does
         return pn.Column(forms[-1], width=380)
 
     with socket.socket() as free:

@@ -2,6 +2,7 @@
 
 import json
 import os
+import time
 from pathlib import Path
 
 import numpy as np
@@ -10,11 +11,20 @@ import xarray
 from hypothesis import given
 from hypothesis import strategies as st
 
+from softafm.campaigns import store as store_module
 from softafm.campaigns.block import DONE, FAILED, UNKNOWN, WARNED, Block
 from softafm.campaigns.campaign import Campaign, Observable
 from softafm.campaigns.progress import in_words, status
-from softafm.campaigns.store import Busy, Store, StoreError, blocks_of, create, differences
-from softafm.campaigns.sweep import load_sweep
+from softafm.campaigns.store import (
+    Busy,
+    Store,
+    StoreError,
+    blocks_of,
+    create,
+    differences,
+    unpacked_size,
+)
+from softafm.campaigns.sweep import load_sweep, opened
 
 SHAPE = (3, 7)
 
@@ -196,3 +206,151 @@ def test_the_status_is_read_from_the_store_alone(store, tmp_path):
 def test_durations_in_words():
     told = [in_words(seconds) for seconds in (3, 119, 300, 9000, 1e6)]
     assert told == ["3 s", "119 s", "5 min", "2 h", "12 days"]
+
+
+# Stores of others
+
+
+def changed(store, name, change):
+    """Change a part of the metadata of a store, where all of them stand."""
+    path = store.path / ".zmetadata"
+    told = json.loads(path.read_text(encoding="utf-8"))
+    change(told["metadata"][name])
+    path.write_text(json.dumps(told), encoding="utf-8")
+
+
+def test_a_store_is_loaded_as_xarray_reads_it(store):
+    ours, theirs = load_sweep(store.path), opened(store).load()
+    xarray.testing.assert_identical(ours, theirs)
+    assert list(ours.variables) == list(theirs.variables)
+    assert {n: v.dtype for n, v in ours.variables.items()} == {
+        n: v.dtype for n, v in theirs.variables.items()
+    }
+    for file in ("one/0.1", "state/0.1", "reason/0.0"):
+        (store.path / file).unlink()
+    xarray.testing.assert_identical(load_sweep(store.path), opened(store).load())
+
+
+@pytest.mark.parametrize(
+    ("name", "values", "words"),
+    [
+        (
+            "one/.zarray",
+            {"filters": [{"id": "pickle"}]},
+            "'one' is kept in a way that softafm does",
+        ),
+        ("one/.zarray", {"compressor": {"id": "lzma"}}, "'one' is kept in a way that softafm does"),
+        ("one/.zarray", {"compressor": None}, "is no store of a sweep, or damaged"),
+        ("reason/.zarray", {"filters": [{"id": "pickle"}]}, "'reason' is kept in a way"),
+        ("one/.zarray", {"dtype": "|V8"}, "'one' is kept in a way that softafm does not write"),
+        ("one/.zarray", {"dtype": "<f4"}, "'one' is not of the type or shape of its runs"),
+        ("one/.zarray", {"dtype": 5}, "is no store of a sweep, or damaged"),
+        ("one/.zarray", {"zarr_format": 3}, "'one' is kept in a way that softafm does not write"),
+        ("one/.zarray", {"dimension_separator": "/"}, "'one' is kept in a way"),
+        ("one/.zarray", {"shape": [3, -7]}, "'one' has the shape [3, -7] in [1, 4]"),
+        ("one/.zarray", {"shape": [3, 7.0]}, "'one' has the shape [3, 7.0] in [1, 4]"),
+        ("one/.zarray", {"chunks": [0, 4]}, "'one' has the shape [3, 7] in [0, 4]"),
+        ("one/.zarray", {"shape": [3, 8]}, "'one' is not of the type or shape of its runs"),
+        ("state/.zarray", {"shape": [10**12, 7]}, "is of an absurd shape, [1000000000000, 7]"),
+        ("state/.zarray", {"shape": [0, 7]}, "is of an absurd shape, [0, 7]"),
+        ("state/.zarray", {"shape": [10**8, 7]}, "is of an absurd shape"),
+        ("state/.zarray", {"chunks": [10**6, 10**6]}, "has blocks of 1000000000000 runs"),
+        ("one/.zattrs", {"units": "days since 1900-01-01"}, "has the unit 'days since 1900-01-01'"),
+        ("one/.zattrs", {"scale_factor": 2.0}, "'one' is described as softafm does not"),
+        ("one/.zattrs", {"units": 2.0}, "'one' is described as softafm does not"),
+        ("one/.zattrs", {"_ARRAY_DIMENSIONS": ["a"]}, "'one' is described as softafm does not"),
+        ("a/.zarray", {"chunks": [1]}, "its coordinate 'a' is in parts"),
+    ],
+)
+def test_what_no_sweep_writes_is_refused_before_it_is_used(store, softafm, name, values, words):
+    changed(store, name, lambda told: told.update(values))
+    for attempt in (load_sweep, status, Store):
+        with pytest.raises(StoreError) as caught:
+            attempt(store.path)
+        assert str(caught.value).startswith(f"{store.path}: ")
+        assert words in str(caught.value)
+        assert "\n" not in str(caught.value)
+    assert softafm("sweep", "--status", store.path) == (2, "", f"softafm: {caught.value}\n")
+
+
+@pytest.mark.parametrize(
+    ("file", "content"),
+    [
+        (".zattrs", ""), (".zattrs", "[]"), (".zattrs", "[" * 100_000), (".zattrs", "{}"),
+        (".zattrs", '{"format": "softafm sweep 1"}'), (".zmetadata", "{"), (".zmetadata", "{}"),
+        (".zmetadata", '{"metadata": []}'), (".zmetadata", '{"metadata": {"state/.zarray": 1}}'),
+        (".zattrs", '{"format": "softafm sweep 1", "campaign": "[]", "values": "{}"}'),
+    ],
+)  # fmt: skip
+def test_metadata_that_make_no_sense_are_refused(store, softafm, file, content):
+    (store.path / file).write_text(content)
+    for attempt in (load_sweep, status):
+        with pytest.raises(StoreError, match=r"s\.zarr: (is no store of a sweep|its campaign)"):
+            attempt(store.path)
+    code, out, said = softafm("sweep", "--status", store.path)
+    assert (code, out, said.count("\n")) == (2, "", 1)
+
+
+@pytest.mark.parametrize("name", ["../outside", "a/../../outside", "..", "/tmp/x", ".hidden"])
+def test_names_do_not_lead_out_of_a_store(store, name):
+    path = store.path / ".zmetadata"
+    told = json.loads(path.read_text(encoding="utf-8"))
+    told["metadata"] |= {f"{name}/{kind}": told["metadata"][f"a/{kind}"] for kind in
+                         (".zarray", ".zattrs")}  # fmt: skip
+    path.write_text(json.dumps(told), encoding="utf-8")
+    with pytest.raises(StoreError, match="has an array named"):
+        load_sweep(store.path)
+
+
+@pytest.mark.parametrize("place", ["one/0.0", "a/0", "one", ".zattrs", "new"])
+def test_links_are_not_followed(store, tmp_path, place):
+    """Not even to a part of the store as it should be."""
+    file = store.path / place
+    if file.exists():
+        file.rename(tmp_path / "outside")
+    file.symlink_to(tmp_path / "outside")
+    with pytest.raises(StoreError, match="is a link, which no store of a sweep holds"):
+        load_sweep(store.path)
+
+
+def test_a_chunk_that_stands_for_more_than_it_may_is_not_unpacked(store, monkeypatch):
+    """Of zeros a few bytes stand for many; their frame says so."""
+    packed = store_module._CODEC.encode(bytes(50_000_000))
+    assert len(packed) < 10_000
+    assert unpacked_size(packed) == 50_000_000
+    (store.path / "one/0.0").write_bytes(packed)
+    (store.path / "reason/0.0").write_bytes(packed)
+    monkeypatch.setattr(store_module, "_LARGEST_TEXTS", 1000)
+    assert store.missing() == [0]
+    with pytest.raises(StoreError, match=r"is damaged \(one: 0.0 has 50000000 bytes unpacked\)"):
+        load_sweep(store.path)
+    for size in (0, 100, 300, 70_000):
+        assert unpacked_size(store_module._CODEC.encode(bytes(size))) == size
+    for odd in (b"", b"odd", packed[:5], b"\x28\xb5\x2f\xfd\x00\x00\x00\x00"):
+        with pytest.raises(ValueError, match=r"Zstandard|say what size"):
+            unpacked_size(odd)
+
+
+def test_more_than_memory_may_hold_is_not_loaded(store, monkeypatch):
+    monkeypatch.setattr(store_module, "_LARGEST", 500)
+    with pytest.raises(StoreError, match=r"GB unpacked, .*: open it with xarray\.open_zarr"):
+        load_sweep(store.path)
+
+
+def test_the_status_of_a_large_store_that_holds_nothing_is_told_at_once(store):
+    shape = {"shape": [10**7, 7]}
+    for name in ("state", "reason", "warning", "one"):
+        changed(store, f"{name}/.zarray", lambda told: told.update(shape | {"chunks": [100, 4]}))
+    changed(store, "two/.zarray", lambda told: told.update({"shape": [10**7, 7, 2],
+                                                            "chunks": [100, 4, 2]}))  # fmt: skip
+    started = time.monotonic()
+    assert status(store.path).runs == 7 * 10**7
+    assert time.monotonic() - started < 5
+
+
+def test_what_is_in_the_folder_besides_is_left_alone(store):
+    (store.path / "zarr.json").write_text("{}")
+    (store.path / "one" / "notes.txt").write_text("x")
+    (store.path / "state" / "99.99").write_bytes(b"x")
+    assert load_sweep(store.path)["state"].shape == SHAPE
+    assert status(store.path).runs == 21

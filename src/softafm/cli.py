@@ -113,7 +113,7 @@ def run(
         experiment = load_experiment(config, changes)
         out = _output(out, f"{config.stem}.nc", (".nc",), force)
     dataset = _carried_out("run", experiment.run)
-    _save(results.save, dataset, out, force)
+    _save(partial(results.save, dataset), out, force)
     _print(observables(dataset))
     typer.echo(f"saved {out}")
 
@@ -137,7 +137,7 @@ def scan(
         experiment = load_map(config, overrides or [])
         out = _output(out, f"{config.stem}.nc", (".nc",), force)
     dataset = _carried_out("scan", partial(experiment.run, workers))
-    _save(results.save, dataset, out, force)
+    _save(partial(results.save, dataset), out, force)
     _print(observables(dataset))
     typer.echo(f"saved {out}")
 
@@ -181,7 +181,7 @@ def example(
     with _bad_input():
         text = example_text(name)
         out = _output(out, f"{name}.toml", (".toml",), force)
-    _write(out, text.encode())
+    _save_content(text.encode(), out, force)
     command = "scan" if name in map_names() else "run"
     typer.echo(f"wrote {out}; run it with: softafm {command} {out}")
 
@@ -205,15 +205,15 @@ def plot(
         out = _output(out, f"{results[0].stem}{kind}.png", _PICTURES, force)
 
         from softafm.plotting import plot as draw
-        from softafm.results import load
+        from softafm.results import load_apart
         from softafm.storyboard import plot_profiles
 
-        datasets = [load(path) for path in results]
+        datasets = [load_apart(path) for path in results]
         if profiles:
             figure = plot_profiles(datasets[0])
         else:
             figure = draw(datasets, labels=[path.stem for path in results])
-    _save_figure(figure, out)
+    _save_figure(figure, out, force)
 
 
 @app.command()
@@ -242,7 +242,7 @@ def animate(
             progress=sys.stderr.isatty(),
         )
         try:
-            _save(write, results.load(result), out, force)
+            _save(partial(write, results.load_apart(result)), out, force)
         except RuntimeError as error:
             raise _Failure(str(error)) from error
     typer.echo(f"saved {out}")
@@ -283,7 +283,7 @@ def show(
         from softafm.laboratory_drawing import plot_contact
 
         figure = plot_contact(load_experiment(config, overrides or []).contact)
-    _save_figure(figure, out)
+    _save_figure(figure, out, force)
 
 
 @app.command()
@@ -300,10 +300,10 @@ def export(
 
         from softafm import export_gwyddion, results
 
-        dataset = results.load(result)
+        dataset = results.load_apart(result)
         write = export_gwyddion if out.suffix.lower() == ".gwy" else results.export
         try:
-            _save(write, dataset, out, force)
+            _save(partial(write, dataset), out, force)
         except ImportError as error:
             raise ValueError(error) from None
     typer.echo(f"saved {out}")
@@ -452,36 +452,30 @@ def _output(out: Path | None, default: str, suffixes: tuple[str, ...], force: bo
     return path
 
 
-def _write(path: Path, content: bytes) -> None:
-    """Write a file whole or not at all."""
-    handle, name = tempfile.mkstemp(dir=path.parent, prefix=f".{path.name}.")
+def _save(write: Callable, out: Path, force: bool) -> None:
+    """Let ``write`` make the output, as ``results.save`` does."""
     try:
-        with os.fdopen(handle, "wb") as file:
-            file.write(content)
-        mask = os.umask(0)
-        os.umask(mask)
-        os.chmod(name, 0o666 & ~mask)
-        os.replace(name, path)
-    except BaseException:
-        Path(name).unlink(missing_ok=True)
-        raise
-
-
-def _save_figure(figure: "Figure", out: Path) -> None:
-    picture = io.BytesIO()
-    figure.savefig(picture, format=out.suffix[1:].lower(), dpi=150)
-    _write(out, picture.getvalue())
-    typer.echo(f"saved {out}")
-
-
-def _save(write: Callable, dataset: "Dataset", out: Path, force: bool) -> None:
-    """Write by ``results.save`` or ``results.export``."""
-    try:
-        write(dataset, out, overwrite=force)
+        write(out, overwrite=force)
     except FileExistsError:
         raise _BadInput(f"--out = {out}: appeared meanwhile; add --force to overwrite") from None
     except OSError as error:
         raise _Failure(f"{out} could not be written: {error.strerror or error}") from error
+
+
+def _save_content(content: bytes, out: Path, force: bool) -> None:
+    from softafm.results import write_whole
+
+    def write(path: Path, *, overwrite: bool) -> None:
+        write_whole(path, overwrite, lambda part: Path(part).write_bytes(content))
+
+    _save(write, out, force)
+
+
+def _save_figure(figure: "Figure", out: Path, force: bool) -> None:
+    picture = io.BytesIO()
+    figure.savefig(picture, format=out.suffix[1:].lower(), dpi=150)
+    _save_content(picture.getvalue(), out, force)
+    typer.echo(f"saved {out}")
 
 
 def _print(renderable) -> None:

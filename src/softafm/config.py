@@ -1,6 +1,5 @@
 """Experiment files: TOML with units as text, read into the objects a Python user would build."""
 
-import tomllib
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field
@@ -15,11 +14,14 @@ from softafm.modes.force_distance import ramp_observables
 from softafm.modes.start import carry, refuse_start_inside, refuse_unable, regularised
 from softafm.modes.tapping import tap_observables
 from softafm.refusals import ConfigError, as_written, nearest, one_of, shown, unknown
+from softafm.toml_text import parse
 
 if TYPE_CHECKING:
     from xarray import Dataset
 
 LARGEST_FILE = 1_000_000
+_MOST_NAMES = 8
+"""How many tables deep an override may go."""
 _TABLES = ("tip", "sample", "surface", "motion")
 _OPTIONAL_TABLES = ("solver", "run")
 
@@ -199,10 +201,9 @@ def document_from(text: str, name: str) -> dict[str, Any]:
     if not text.strip():
         raise ConfigError([f"{name}: is empty; 'softafm example' shows what it may hold"])
     try:
-        return tomllib.loads(text)
-    except (ValueError, RecursionError) as error:
-        reason = "nested too deeply" if isinstance(error, RecursionError) else error
-        raise ConfigError([f"{name}: is not valid TOML: {reason}"]) from None
+        return parse(text)
+    except ValueError as error:
+        raise ConfigError([f"{name}: {error}"]) from None
 
 
 def set_value(document: dict[str, Any], override: str) -> None:
@@ -215,7 +216,7 @@ def set_value(document: dict[str, Any], override: str) -> None:
     """
     key, equals, text = override.partition("=")
     names = [name.strip() for name in key.split(".")]
-    if not equals or not all(names):
+    if not equals or not all(names) or len(names) > _MOST_NAMES:
         raise ConfigError(
             [f"override {shown(override)}: must be key=value, such as sample.E0=3GPa"]
         )
@@ -231,8 +232,8 @@ def set_value(document: dict[str, Any], override: str) -> None:
 def value_of(text: str) -> Any:
     """Read a number, flag or list as in TOML; anything else is text that needs no quotes."""
     try:
-        parsed = tomllib.loads(f"value = {text}")
-    except (ValueError, RecursionError):
+        parsed = parse(f"value = {text}")
+    except ValueError:
         return text
     return parsed["value"] if len(parsed) == 1 else text
 

@@ -1,6 +1,8 @@
 """How values are written in an experiment file: types that read text, units and lists."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager
+from contextvars import ContextVar
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated, Any, Literal
@@ -11,7 +13,7 @@ from softafm import units
 from softafm._validate import finite, poisson_ratio, positive, tabor_of, tolerance_of, whole
 from softafm.refusals import one_of
 
-_MOST_RATIOS = 1000
+_MOST_ENTRIES = 1000
 _MOST_PIXELS = 4096
 
 
@@ -78,9 +80,9 @@ def _cycles(written: Any) -> int | str:
 
 def _points(written: Any) -> int:
     try:
-        return whole("points", written, 2, _MOST_RATIOS)
+        return whole("points", written, 2, _MOST_ENTRIES)
     except ValueError:
-        raise ValueError(f"must be a whole number from 2 to {_MOST_RATIOS}") from None
+        raise ValueError(f"must be a whole number from 2 to {_MOST_ENTRIES}") from None
 
 
 def _ratio(written: Any) -> float:
@@ -88,12 +90,6 @@ def _ratio(written: Any) -> float:
     if not 0 < number < 1:
         raise ValueError("must be above 0 and below 1")
     return number
-
-
-def _ratios(written: Any) -> Any:
-    if isinstance(written, list) and len(written) > _MOST_RATIOS:
-        raise ValueError(f"has {len(written)} entries: must have at most {_MOST_RATIOS}")
-    return _list(written)
 
 
 def _whole(written: Any) -> int:
@@ -122,14 +118,31 @@ def choice_of(choices: Mapping[str, Any]) -> Any:
 def _list(written: Any) -> Any:
     if not isinstance(written, list) or not written:
         raise ValueError("must be a list, in square brackets, with at least one entry")
+    if len(written) > _MOST_ENTRIES:
+        raise ValueError(f"has {len(written)} entries: must have at most {_MOST_ENTRIES}")
     return tuple(written)
+
+
+_reading: ContextVar[Callable[[Callable[[Path], Any], Path], Any]] = ContextVar(
+    "reading", default=lambda read, path: read(path)
+)
+
+
+@contextmanager
+def files_read_by(reading: Callable[[Callable[[Path], Any], Path], Any]) -> Iterator[None]:
+    """Have ``reading(read, path)`` called inside for every CSV file in place of ``read(path)``."""
+    before = _reading.set(reading)
+    try:
+        yield
+    finally:
+        _reading.reset(before)
 
 
 def file_of(read: Callable[[Path], Any]) -> tuple[Any, ...]:
     """Return the marks of a type that reads the name of a CSV file as what the file holds."""
 
     def held(written: Any, info: ValidationInfo) -> Any:
-        return read(_file(written, info))
+        return _reading.get()(read, _file(written, info))
 
     return _described(held, "the name of a CSV file", Input("file", "approach.csv"))
 
@@ -189,7 +202,7 @@ QualityFactor = Annotated[
     float, *_described(_number, "a number, such as 430", Input("number", "430"))
 ]
 Ratio = Annotated[float, BeforeValidator(_ratio), Input("number", "0.9")]
-Ratios = Annotated[tuple[Ratio, ...], BeforeValidator(_ratios), Input("list", "0.9")]
+Ratios = Annotated[tuple[Ratio, ...], BeforeValidator(_list), Input("list", "0.9")]
 Points = Annotated[int, BeforeValidator(_points), Input("number", "31")]
 Cycles = Annotated[int | Literal["steady"], BeforeValidator(_cycles), Input("word", "steady")]
 Flag = Annotated[bool, BeforeValidator(_flag), Input("flag")]

@@ -3,11 +3,13 @@
 import re
 from collections.abc import Mapping, Sequence
 from difflib import get_close_matches
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-from pydantic import BaseModel
+if TYPE_CHECKING:
+    from pydantic import BaseModel
 
 _LONGEST_SHOWN = 60
+_MOST_TOLD = 50
 _OTHER_NAMES = {
     "W": ("work_of_adhesion",),
     "E0": ("G0",),
@@ -22,10 +24,13 @@ class ConfigError(ValueError):
     """An experiment file or an override that cannot be used: one line for each problem."""
 
     def __init__(self, problems: Sequence[str]):
-        super().__init__("\n".join(_one_line(problem) for problem in problems))
+        lines = [_one_line(problem) for problem in problems[:_MOST_TOLD]]
+        if len(problems) > _MOST_TOLD:
+            lines.append(f"and {len(problems) - _MOST_TOLD} more like these")
+        super().__init__("\n".join(lines))
 
 
-def problems(name: str, model: type[BaseModel], error: Any, valid: list[str]) -> list[str]:
+def problems(name: str, model: "type[BaseModel]", error: Any, valid: list[str]) -> list[str]:
     """Put one of pydantic's errors into sentences: one, or those of a table within the table."""
     inner = error.get("ctx", {}).get("error")
     if isinstance(inner, ConfigError):
@@ -33,7 +38,7 @@ def problems(name: str, model: type[BaseModel], error: Any, valid: list[str]) ->
     return [_problem(name, model, error, valid)]
 
 
-def _problem(name: str, model: type[BaseModel], error: Any, valid: list[str]) -> str:
+def _problem(name: str, model: "type[BaseModel]", error: Any, valid: list[str]) -> str:
     key = error["loc"][0]
     path = f"{name}.{key}" + "".join(f"[{index}]" for index in error["loc"][1:])
     if error["type"] == "extra_forbidden":

@@ -4,84 +4,22 @@ import inspect
 import json
 import os
 import tempfile
+from collections.abc import Mapping, Sequence
 from dataclasses import fields, is_dataclass
 from datetime import UTC, datetime
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 import softafm
+from softafm.result_content import FORMAT, LARGEST, variable
 from softafm.solvers.history import History
 
 if TYPE_CHECKING:
-    from xarray import Dataset, Variable
+    from xarray import Dataset
 
-# name: (unit, long name)
-VARIABLES = {
-    "time": ("s", "time"),
-    "r": ("m", "radial coordinate"),
-    "tip_height": ("m", "tip height above the undeformed surface"),
-    "base_height": ("m", "height of the base: that of the tip on an unbent lever"),
-    "deflection": ("m", "deflection of the lever, positive away from the sample"),
-    "force": ("N", "force on the tip, positive = repulsive"),
-    "contact_radius": ("m", "radius of the largest tension"),
-    "axis_deformation": ("m", "surface displacement under the apex, positive towards the tip"),
-    "viscous_power": ("W", "power dissipated in the sample"),
-    "deformation": ("m", "surface displacement, positive towards the tip"),
-    "gap": ("m", "gap between tip and deformed surface"),
-    "pressure": ("Pa", "pressure on the surface, positive = repulsive"),
-    "force_max": ("N", "largest force"),
-    "force_min": ("N", "smallest force"),
-    "force_mean": ("N", "mean force of a cycle"),
-    "force_min_approach": ("N", "smallest force before the lowest height"),
-    "loop_energy": ("J", "energy dissipated in the motion, -∮F dh0 or -∮F dZ"),
-    "viscous_loss": ("J", "energy dissipated in the sample"),
-    "branch": ("1", "branch of solutions"),
-    "amplitude_ratio": ("1", "amplitude over free amplitude"),
-    "sweep_height": ("m", "mean height of the tip in a sweep"),
-    "mean_height": ("m", "mean height of the tip"),
-    "amplitude": ("m", "amplitude of the tip"),
-    "phase": ("degree", "lag of the deflection behind the drive"),
-    "virial": ("J", "virial, mean of F·(h0 - mean height) over a cycle"),
-    "dissipation": ("J", "energy dissipated in a cycle, -∮F dh0"),
-    "cycles_run": ("1", "cycles that were run"),
-    "cycle_virial": ("J", "virial of each cycle"),
-    "cycle_dissipation": ("J", "energy dissipated in each cycle"),
-    "contact_time": ("s", "time in contact in a cycle"),
-    "indentation": ("m", "largest depth of the surface under the apex"),
-    "jump_time": ("s", "time of elastic jumps"),
-    "jump_energy": ("J", "energy released by elastic jumps"),
-    "x": ("m", "position along a line of a map"),
-    "y": ("m", "position down the lines of a map"),
-    "topography": ("m", "height at which the lever is left, that of the sample included"),
-    "sample_height": ("m", "height of the surface"),
-    "lowest_height": ("m", "lowest height of the tip, or of the base of its lever"),
-    "material": ("1", "number of the material"),
-}
-
-_DIRECTIONS = {"approach": "falls", "retract": "rises"}
-_FORMAT = "softafm result 1"
-
-
-def variable(name: str, dims, values) -> "Variable":
-    """Return values under a known name, with its unit and long name as attributes.
-
-    A name may be prefixed by ``approach_`` or ``retract_``.
-    """
-    from xarray import Variable
-
-    units, long_name = VARIABLES[name] if name in VARIABLES else _swept(name)
-    array = np.asarray(values)
-    array = array if array.dtype.kind == "U" else array.astype(float)
-    return Variable(dims, array, {"units": units, "long_name": long_name})
-
-
-def _swept(name: str) -> tuple[str, str]:
-    """Return unit and long name of what is recorded in a sweep of the height."""
-    direction, _, rest = name.partition("_")
-    units, long_name = VARIABLES[rest]
-    return units, f"{long_name}, while the height {_DIRECTIONS[direction]}"
+    from softafm.result_files import Content
 
 
 def describe(thing) -> dict:
@@ -204,7 +142,7 @@ def _provenance(mode, contact, parts, solver, tolerance, warnings, diagnostics) 
         for name, thing in things.items()
     }
     return {
-        "format": _FORMAT,
+        "format": FORMAT,
         "mode": mode,
         "experiment": json.dumps({"mode": mode, **experiment}),
         "solver": json.dumps(describe(solver)),
@@ -237,27 +175,101 @@ def save(result: "Dataset", path, *, overwrite: bool = False) -> None:
     write_whole(path, overwrite, lambda part: Path(part).write_bytes(content))
 
 
-def load(path) -> "Dataset":
+def load(path, *, largest: float = LARGEST) -> "Dataset":
     """Read a result written by ``save``, whole, and close the file.
+
+    What lies outside the file is never read, even if the file says that it belongs to it.
+
+    Parameters
+    ----------
+    path
+        The file.
+    largest
+        Size that its variables may have in memory, bytes: a small file can stand for a large one.
 
     Raises
     ------
     FileNotFoundError
         If there is no such file.
     ValueError
-        If it is not a result of softafm.
+        If it is not a result of softafm, lacks what its mode needs, or is larger.
     """
-    from xarray import load_dataset
+    from softafm.result_files import read
 
     if not Path(path).is_file():
         raise FileNotFoundError(f"{path}: no such file")
     try:
-        result = load_dataset(path, engine="h5netcdf")
-    except Exception as problem:
-        raise ValueError(f"{path}: not a readable NetCDF file ({problem})") from None
-    if result.attrs.get("format") != _FORMAT:
-        raise ValueError(f"{path}: not a result of softafm (its attribute 'format' says otherwise)")
-    return result
+        return result_of(*read(str(path), int(largest)))
+    except ValueError as problem:
+        raise ValueError(f"{path}: {problem}") from None
+
+
+def load_apart(path, *, largest: float = LARGEST, seconds: float | None = None) -> "Dataset":
+    """Read a result of someone else, as ``load`` does, in a process of its own.
+
+    A damaged file that makes the reading go on for ever, or end its process, harms no one then.
+
+    Parameters
+    ----------
+    path, largest
+        As for ``load``.
+    seconds
+        Time after which the reading is ended, s; by default ``softafm.guard.seconds_for``.
+
+    Raises
+    ------
+    FileNotFoundError, ValueError
+        As ``load``, and ValueError if the file cannot be read in that time.
+    """
+    from softafm.guard import read_apart, seconds_for
+
+    if not Path(path).is_file():
+        raise FileNotFoundError(f"{path}: no such file")
+    try:
+        found = read_apart(
+            "softafm.result_files:read",
+            str(path),
+            int(largest),
+            seconds=seconds_for(path) if seconds is None else seconds,
+            largest=int(largest),
+        )
+        return result_of(*found)
+    except ValueError as problem:
+        raise ValueError(f"{path}: {problem}") from None
+
+
+def result_of(content: "Content", arrays: Sequence[np.ndarray]) -> "Dataset":
+    """Return the result that ``softafm.result_files.read`` found in a file.
+
+    Raises
+    ------
+    ValueError
+        If it is none, or lacks what its mode needs.
+    """
+    from xarray import Dataset
+
+    from softafm.result_check import refuse_unusable
+
+    attributes, described, coordinates = content
+    variables = {
+        name: (tuple(dimensions), values, attrs)
+        for (name, dimensions, attrs), values in zip(described, arrays, strict=True)
+    }
+    refuse_unusable(attributes, variables)
+    made = {name: (*parts, _as_saved(attrs)) for name, (*parts, attrs) in variables.items()}
+    return Dataset(made, attrs=_as_saved(attributes)).set_coords(coordinates)
+
+
+def _as_saved(attributes: Mapping[str, Any]) -> dict:
+    """Return attributes as NumPy's numbers and arrays of numbers, as xarray reads them."""
+    return {
+        name: value if isinstance(value, str) or _holds_text(value) else np.array(value)[()]
+        for name, value in attributes.items()
+    }
+
+
+def _holds_text(value) -> bool:
+    return isinstance(value, list) and any(isinstance(each, str) for each in value)
 
 
 def export(result: "Dataset", path, *, overwrite: bool = False) -> None:
@@ -286,8 +298,9 @@ def export(result: "Dataset", path, *, overwrite: bool = False) -> None:
 
 def _write_csv(result, path):
     along = "time" if "time" in result.dims else "sweep_height"
-    curves = [result[along]] + [v for v in result.data_vars.values() if v.dims == (along,)]
-    scalars = [v for v in result.data_vars.values() if v.dims == ()]
+    numbers = [v for v in result.data_vars.values() if v.dtype.kind in "fiub"]
+    curves = [result[along]] + [v for v in numbers if v.dims == (along,)]
+    scalars = [v for v in numbers if v.dims == ()]
     header = [f"{v.name} = {float(v):.9g} {v.units}" for v in scalars]
     header += [f"experiment = {result.attrs['experiment']}"]
     names = ",".join(f"{v.name} ({v.units})" for v in curves)

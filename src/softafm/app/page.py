@@ -2,7 +2,9 @@
 
 import base64
 import binascii
+from collections.abc import Callable
 from contextlib import suppress
+from functools import partial
 from importlib import resources
 from pathlib import Path
 from typing import Any
@@ -16,13 +18,13 @@ from softafm.app.form import presets
 from softafm.app.limits import Limits
 from softafm.app.links import from_query, to_query
 from softafm.app.notebook import FRAME, load_panel, shared_runner
+from softafm.app.readings import Reading, read_document
 from softafm.app.rows import about, row_of
 from softafm.app.runs import Runner
 from softafm.app.session import Entry, Session, refuse_large
 from softafm.app.tables import regime_table
 from softafm.app.views import views
 from softafm.app.widgets import Form
-from softafm.config import document_from
 from softafm.refusals import ConfigError
 
 FIRST = "ldpe-tapping"
@@ -73,6 +75,7 @@ class Page(pn.viewable.Viewer):
         self.theme: Theme = "light"
         self._movie, self._selected, self._notice = True, "", ""
         self._drawn: Any = None
+        self._file: tuple[str, Reading, Callable[[Any], None]] | None = None
         self._looking: Any = None
         self.form = Form(presets()[FIRST], largest_upload=self.limits.upload_bytes // 4)
         self.session = Session(runner, self.form.folder, self.limits)
@@ -152,6 +155,10 @@ class Page(pn.viewable.Viewer):
         self.form.close()
 
     @property
+    def _busy(self) -> bool:
+        return self.session.busy or self.form.reading or self._file is not None
+
+    @property
     def _can_film(self) -> bool:
         return self.form.document.get("mode") != "approach-curve"
 
@@ -175,32 +182,40 @@ class Page(pn.viewable.Viewer):
             self.session.cancel(id)
 
     def _open(self, name: str, content: str) -> None:
+        """Begin to read a file; ``_take_file`` goes on once it was read."""
+
         def attempt():
+            if self._file is not None:
+                raise ValueError(f"{name}: another file is being read; open it again in a moment")
             given = base64.b64decode(content, validate=True)
             refuse_large(given, self.limits)
             if Path(name).suffix.lower() == ".nc":
-                return self._uploaded(name, given)
-            try:
-                text = given.decode("utf-8-sig")
-            except UnicodeDecodeError:
-                raise ValueError(f"{name}: neither a result (.nc) nor text") from None
-            self.form.document = document_from(text, name)
-            return None
+                return name, self.session.read(name, given), partial(self._uploaded, name)
+            return name, Reading(partial(read_document, name, given)), self._fill_in
 
         with suppress(binascii.Error):
-            entry = self._try(attempt)
-            if entry is not None:
-                self._selected = entry.id
+            self._file = self._try(attempt) or self._file
+            self._look()
 
-    def _uploaded(self, name: str, content: bytes) -> Entry:
-        """List a result from a file, if it can be drawn."""
-        entry = self.session.upload(name, content)
+    def _take_file(self) -> None:
+        """Take a file that was read meanwhile."""
+        if self._file is None or not self._file[1].over:
+            return
+        (_, reading, take), self._file = self._file, None
+        self._try(lambda: take(reading.result()))
+
+    def _fill_in(self, document: dict[str, Any]) -> None:
+        self.form.document = document
+
+    def _uploaded(self, name: str, result: Any) -> None:
+        """List a result from a file, if it can be drawn, and select it."""
+        entry = self.session.add(name, result)
         try:
             views([entry], entry, self.form.folder, self.theme, self._address)
         except Exception as error:
             self.session.remove(entry.id)
             raise ValueError(f"{name}: a result that cannot be drawn ({error!r})") from error
-        return entry
+        self._selected = entry.id
 
     def _take_theme(self, theme: Theme) -> None:
         self.theme = theme
@@ -215,28 +230,33 @@ class Page(pn.viewable.Viewer):
         self._regime.state = regime_table(found.rows, self.form.problems)
         self._notice = ""
         self._write_address()
+        self._look()
         self._refresh()
 
     def _look(self) -> None:
-        """Look after runs that go on, from now on."""
-        if self._looking is None and (self._served or self._displayed):
+        """Look after runs and files that go on, if any do, from now on."""
+        if self._busy and self._looking is None and (self._served or self._displayed):
             self._looking = pn.state.add_periodic_callback(self._refresh, _BETWEEN_LOOKS)
 
     def _refresh(self) -> None:
         """Bring bar, list and tabs up to date."""
+        self._take_file()
+        self.form.look()
         self._bar.state = self._bar_state()
         self._list.state = {
             "runs": [row_of(entry) for entry in self.session.entries],
             "selected": self._selected,
         }
         self._draw()
-        if self._looking is not None and not self.session.busy:
+        if self._looking is not None and not self._busy:
             self._looking.stop()
             self._looking = None
 
     def _bar_state(self) -> dict[str, Any]:
         problems, seconds = self.form.problems, self.form.outlook.seconds
         words, bad = self._notice, bool(self._notice)
+        if not words and self._file is not None:
+            words = f"reading {self._file[0]} ..."
         if not words and problems:
             count = len(problems)
             words, bad = f"{count} value{'s' * (count > 1)} to mend before it can run", True
@@ -262,7 +282,8 @@ class Page(pn.viewable.Viewer):
         first, self._drawn = self._drawn in (None, ([], None)), wanted
         titles = list(self._tabs._names)
         title = titles[self._tabs.active] if titles else _REGIME
-        found = views(shown, selected, self.form.folder, self.theme, self._address)
+        with self.form.files_as_read():
+            found = views(shown, selected, self.form.folder, self.theme, self._address)
         kept = self._tabs[0]
         self._tabs[:] = [(_REGIME, kept), *found.items()]
         titles = [_REGIME, *found]

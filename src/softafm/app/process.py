@@ -1,6 +1,5 @@
 """The handle of a process that runs experiments (``softafm.app.worker``)."""
 
-import os
 import pickle
 import signal
 import subprocess
@@ -9,18 +8,13 @@ from collections.abc import Mapping
 from contextlib import suppress
 from typing import TYPE_CHECKING, Any
 
+from softafm.guard import environment
+
 if TYPE_CHECKING:
     from softafm.app.worker import Answer
 
 GONE = (EOFError, OSError, pickle.UnpicklingError)
 """What asking or hearing a process raises that is gone."""
-_KEPT = {
-    "HOME", "LANG", "LANGUAGE", "LD_LIBRARY_PATH", "DYLD_LIBRARY_PATH", "LOCALAPPDATA", "PATH",
-    "SYSTEMROOT", "TEMP", "TMP", "TMPDIR", "USERPROFILE",
-}  # fmt: skip
-_KEPT_PREFIXES = ("LC_", "XDG_", "NUMBA_", "OPENBLAS_", "NVPL_", "BLIS_", "MKL_", "OMP_")
-"""Among them what chooses the code for algebra: with another a run differs in its last bits."""
-_THREADS = ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS", "VECLIB_MAXIMUM_THREADS")
 
 
 class Process:
@@ -41,7 +35,7 @@ class Process:
         # Not multiprocessing: its children import the parent's script, and get all its environment.
         command = [sys.executable, "-P", "-m", "softafm.app.worker", str(largest)]
         self._process = subprocess.Popen(
-            command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, env=_environment()
+            command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, env=environment()
         )
         assert self._process.stdin is not None
         assert self._process.stdout is not None
@@ -95,14 +89,3 @@ class Process:
         self._answers.close()
         with suppress(OSError):  # the last request may never have got through
             self._requests.close()
-
-
-def _environment() -> dict[str, str]:
-    """Return what a process needs to know of ours: no secrets, and one thread for algebra."""
-    kept = {
-        name: value
-        for name, value in os.environ.items()
-        if name.upper() in _KEPT or name.upper().startswith(_KEPT_PREFIXES)
-    }
-    kept["PYTHONPATH"] = os.pathsep.join(entry for entry in sys.path if entry)
-    return kept | dict.fromkeys(_THREADS, "1")

@@ -3,6 +3,7 @@
 from collections.abc import Mapping
 from copy import deepcopy
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING, Any
@@ -10,6 +11,7 @@ from uuid import uuid4
 
 from softafm.app.colours import RUNS
 from softafm.app.limits import Limits
+from softafm.app.readings import Reading
 from softafm.app.runs import Job, Runner, State
 
 if TYPE_CHECKING:
@@ -111,25 +113,23 @@ class Session:
             name, document, job=self._runner.submit(document, self._folder, self._user)
         )
 
-    def upload(self, name: str, content: bytes) -> Entry:
-        """List a result that ``softafm run`` or this page saved.
+    def read(self, name: str, content: bytes) -> Reading:
+        """Begin to read a result that ``softafm run`` or this page saved; its result is a dataset.
 
         Raises
         ------
         ValueError
-            If it is none, is too large, or too many are listed.
+            If it is none or too large, or too many are listed; more may be found as it is read.
         """
         self._refuse_more()
         refuse_large(content, self._limits)
         if not content.startswith(_HDF5):
             raise ValueError(f"{name}: not a NetCDF file that softafm wrote")
-        with TemporaryDirectory() as folder:
-            path = Path(folder) / "result.nc"
-            path.write_bytes(content)
-            try:
-                result = _loaded(path, self._limits.kept_bytes)
-            except ValueError as error:
-                raise ValueError(str(error).replace(str(path), name)) from None
+        return Reading(partial(_read_result, name, content, self._limits.kept_bytes))
+
+    def add(self, name: str, result: "Dataset") -> Entry:
+        """List a result from a file; ValueError if too many are listed."""
+        self._refuse_more()
         return self._add(Path(name).stem, {}, uploaded=result)
 
     def rename(self, id: str, label: str) -> None:
@@ -178,20 +178,17 @@ class Session:
         return entry
 
 
-def _loaded(path: Path, most: int) -> "Dataset":
-    """Read a result, which a few bytes of a compressed file may stand for very many of."""
-    from xarray import open_dataset
+def _read_result(name: str, content: bytes, most: int) -> "Dataset":
+    """Read a result in a process of its own; ``most`` is its size in memory, bytes."""
+    from softafm.results import load_apart
 
-    from softafm.results import load
-
-    try:
-        with open_dataset(path, engine="h5netcdf") as unread:
-            size = unread.nbytes
-    except Exception as problem:
-        raise ValueError(f"{path}: not a readable NetCDF file ({problem})") from None
-    if size > most:
-        raise ValueError(f"{path}: has {size / 1e6:.0f} MB unpacked: at most {most / 1e6:g} MB")
-    return load(path)
+    with TemporaryDirectory(prefix="softafm-") as folder:
+        path = Path(folder) / "result.nc"
+        path.write_bytes(content)
+        try:
+            return load_apart(path, largest=most)
+        except ValueError as error:
+            raise ValueError(str(error).replace(str(path), name)) from None
 
 
 def refuse_large(content: bytes, limits: Limits) -> None:

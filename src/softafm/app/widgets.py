@@ -4,7 +4,7 @@ import base64
 import binascii
 import shutil
 from collections.abc import Iterator, Mapping
-from contextlib import contextmanager, suppress
+from contextlib import AbstractContextManager, contextmanager, suppress
 from copy import deepcopy
 from importlib import resources
 from pathlib import Path
@@ -21,7 +21,9 @@ from softafm.app.form import MODES, presets
 from softafm.app.marks import placed, with_missing
 from softafm.app.outlook import Outlook, outlook
 from softafm.app.plan import Shown, plan_of, shown_sections
+from softafm.app.readings import MeasuredFiles
 from softafm.app.uploads import keep
+from softafm.entries import files_read_by
 
 _LONGEST_TEXT = 20_000
 
@@ -83,6 +85,7 @@ class Form(pn.viewable.Viewer):
             folder = Path(mkdtemp(prefix="softafm-"))
             self._own = finalize(self, shutil.rmtree, folder, ignore_errors=True)
         self.folder, self.largest_upload = folder, largest_upload
+        self._measured, self._reading = MeasuredFiles(), False
         self._presets = presets()
         self._typed: dict[str, str] = {}
         self._memory: dict[str, Any] = {}
@@ -163,6 +166,21 @@ class Form(pn.viewable.Viewer):
         else:
             self.edit(path, kept)
 
+    @property
+    def reading(self) -> bool:
+        """Whether a file that the document names is being read; ``look`` tells when it was."""
+        return self._reading
+
+    def look(self) -> None:
+        """Let problems and outlook follow files that were read meanwhile."""
+        if self._reading and not self._measured.busy:
+            with self._answers():
+                self._follow()
+
+    def files_as_read(self) -> AbstractContextManager[None]:
+        """Have files of the document not read again inside."""
+        return files_read_by(self._measured.read)
+
     def answer(self, message: Any) -> None:
         """Take what the browser sent; what is malformed or late is left aside."""
         with suppress(LookupError, binascii.Error):
@@ -214,7 +232,9 @@ class Form(pn.viewable.Viewer):
             for memory in (self._typed, self._memory, self._ways, self._refused):
                 memory.clear()
         self._shown = shown_sections(self.document, self._ways)
-        found = outlook(self.document, self.folder)
+        with self.files_as_read():
+            found = outlook(self.document, self.folder)
+        self._reading = self._measured.busy
         problems = with_missing(found.problems, self._shown, self.document) | self._refused
         found = Outlook(problems) if problems else found
         self.param.update(outlook=found, problems=found.problems)

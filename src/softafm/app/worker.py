@@ -20,6 +20,7 @@ from typing import IO, Any, Literal
 
 from softafm.config import document_from, example_text, experiment_from
 from softafm.errors import AccuracyWarning, DivergedError
+from softafm.guard import bound_memory
 
 Answer = tuple[Literal["ready", "progress", "warning", "result", "problem"], Any]
 """``ready`` comes once, at the start; of a run there are any number of ``progress`` (fraction,
@@ -108,17 +109,6 @@ def refuse_large(kind: str, content: Any, largest: int) -> tuple[str, Any]:
         size = f"{content.nbytes / 1e6:.0f} MB, more than {largest / 1e6:g} MB"
         return "problem", f"its result has {size}: {_SMALLER}"
     return kind, content
-
-
-def bound_memory(size: int) -> None:
-    """Let this process have so many bytes of memory, where the operating system can see to it."""
-    try:
-        import resource
-    except ModuleNotFoundError:
-        return
-    hard = resource.getrlimit(resource.RLIMIT_DATA)[1]
-    if hard == resource.RLIM_INFINITY or size < hard:
-        resource.setrlimit(resource.RLIMIT_DATA, (size, hard))
 
 
 def one_line(text: str) -> str:

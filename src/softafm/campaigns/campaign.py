@@ -21,7 +21,7 @@ from softafm.config import build_table, experiment_from
 from softafm.contact import Contact
 from softafm.errors import AccuracyWarning
 from softafm.refusals import ConfigError, nearest, shown
-from softafm.results import VARIABLES
+from softafm.result_content import VARIABLES
 
 Coordinate = tuple[tuple[str, ...], np.ndarray, Mapping[str, str]]
 """Dimensions, values and attributes."""

@@ -58,7 +58,7 @@ def status(path: str | Path) -> Status:
     store = Store(Path(path))
     counts = np.zeros(4, int)
     times, runs, example = [], [], None
-    for number in range(store.block_count):
+    for number in store.begun_blocks():
         states = store.state(number)
         counts += np.bincount(states, minlength=4)[:4]
         if example is None and (states == FAILED).any():

@@ -23,12 +23,12 @@ import softafm
 from softafm.campaigns.block import DONE, FAILED, UNKNOWN, WARNED, Block
 from softafm.campaigns.campaign import Campaign, Observable
 from softafm.campaigns.extra import require
+from softafm.campaigns.store_check import FORMAT, StoreError, read_metadata
 from softafm.refusals import shown
 
 require("zarr", "numcodecs")
 from numcodecs import VLenUTF8, Zstd  # noqa: E402
 
-FORMAT = "softafm sweep 1"
 _CODEC = Zstd(level=3, checksum=True)
 _TEXTS = VLenUTF8()
 _STATE = {
@@ -37,12 +37,14 @@ _STATE = {
     "flag_meanings": "not_run done failed done_with_warning",
 }
 _TEXT_ARRAYS = {"reason": "why the run failed", "warning": "what the run warns of"}
+_EMPTY = {"state": UNKNOWN, "reason": "", "warning": ""}
+"""What stands for runs not done, where that is not NaN."""
+_TEXT: Any = getattr(np.dtypes, "StringDType", lambda: object)()
+"""Type of texts in memory, as Zarr has them."""
+_LARGEST, _LARGEST_TEXTS = 4_000_000_000, 200_000_000
+"""Sizes of what is loaded at once, and of the texts of a block, bytes."""
 RESERVED = ("state", *_TEXT_ARRAYS)
 """Names of variables that every store has besides its observables."""
-
-
-class StoreError(ValueError):
-    """A store that cannot be used as asked; the message says what can be done."""
 
 
 class Busy(StoreError):
@@ -74,21 +76,11 @@ class Store:
 
     def __init__(self, path: Path):
         self.path = Path(path)
-        try:
-            self.attributes = json.loads((self.path / ".zattrs").read_text(encoding="utf-8"))
-            told = json.loads((self.path / ".zmetadata").read_text(encoding="utf-8"))["metadata"]
-            if self.attributes["format"] != FORMAT:
-                raise ValueError
-            self._arrays = {n[:-8]: m for n, m in told.items() if n.endswith("/.zarray")}
-            self.shape = tuple(self._arrays["state"]["shape"])
-            self.block = tuple(self._arrays["state"]["chunks"])
-            self.dimensions = tuple(told["state/.zattrs"]["_ARRAY_DIMENSIONS"])
-            self._observables = self.attributes["observables"]
-        except FileNotFoundError:
-            what = "is no store of a sweep" if self.path.exists() else "no such store"
-            raise StoreError(f"{path}: {what}") from None
-        except (OSError, ValueError, KeyError, TypeError):
-            raise StoreError(f"{path}: is no store of a sweep, or damaged") from None
+        self.attributes, self._arrays, self._told = read_metadata(self.path)
+        self.shape = tuple(self._arrays["state"]["shape"])
+        self.block = tuple(self._arrays["state"]["chunks"])
+        self.dimensions = tuple(self._told["state"]["_ARRAY_DIMENSIONS"])
+        self._observables = self.attributes["observables"]
 
     @property
     def size(self) -> int:
@@ -132,8 +124,7 @@ class Store:
         ranges, chunks = self.ranges(number), tuple(array["chunks"])
         values = values.reshape(*map(len, ranges), *chunks[len(ranges) :])
         if values.shape != chunks:
-            empty = {"reason": "", "warning": "", "state": UNKNOWN}.get(name, np.nan)
-            full = np.full(chunks, empty, dtype=values.dtype)
+            full = np.full(chunks, _EMPTY.get(name, np.nan), dtype=values.dtype)
             full[tuple(slice(n) for n in values.shape)] = values
             values = full
         if array["dtype"] == "|O":
@@ -147,26 +138,95 @@ class Store:
         key = ".".join(map(str, (*self._position(number), *(0,) * further)))
         return self.path / name / key
 
+    def begun_blocks(self) -> list[int]:
+        """Return the numbers of the blocks of which anything is known, in order."""
+        return sorted(self._numbers("state"))
+
+    def _numbers(self, name: str) -> list[int]:
+        """Return the numbers of the blocks of which an array has a chunk."""
+        depth = len(self.shape)
+        keys = (entry.split(".") for entry in os.listdir(self.path / name))
+        whole = (key for key in keys if len(key) >= depth and all(map(_is_index, key)))
+        places = (tuple(map(int, key[:depth])) for key in whole)
+        counts = self._counts
+        return [
+            int(np.ravel_multi_index(place, counts))
+            for place in places
+            if all(i < n for i, n in zip(place, counts, strict=True))
+        ]
+
     def state(self, number: int) -> np.ndarray:
         """Return what became of the runs of a block, flat; all unknown if that is not known."""
         sizes = tuple(map(len, self.ranges(number)))
         found = self._read("state", number)
-        if found is None:
+        if found is None or found.max(initial=UNKNOWN) > WARNED:
             return np.full(prod(sizes), UNKNOWN, np.uint8)
         return found.reshape(self.block)[tuple(slice(n) for n in sizes)].ravel()
 
     def _read(self, name: str, number: int) -> np.ndarray | None:
         """Return the values of a chunk, flat; None if it is missing or damaged."""
-        array = self._arrays[name]
         try:
-            content = _CODEC.decode(self._file(name, number).read_bytes())
-            if array["dtype"] == "|O":
-                values = _TEXTS.decode(content)
-            else:
-                values = np.frombuffer(content, dtype=array["dtype"])
+            return self._decoded(name, self._file(name, number))
         except (FileNotFoundError, RuntimeError, ValueError):
             return None
-        return values if values.size == prod(array["chunks"]) else None
+
+    def _decoded(self, name: str, file: Path) -> np.ndarray:
+        """Return the values of a chunk, flat; RuntimeError or ValueError if it is damaged."""
+        array = self._arrays[name]
+        packed, count = file.read_bytes(), prod(array["chunks"])
+        texts = array["dtype"] == "|O"
+        size = unpacked_size(packed)
+        if size > _LARGEST_TEXTS if texts else size != count * np.dtype(array["dtype"]).itemsize:
+            raise ValueError(f"{file.name} has {size} bytes unpacked")
+        content = _CODEC.decode(packed)
+        if not texts:
+            return np.frombuffer(content, dtype=array["dtype"])
+        values = _TEXTS.decode(content)
+        if values.size != count:
+            raise ValueError(f"{file.name} has {values.size} texts, not {count}")
+        return values
+
+    def load(self) -> dict[str, tuple[list[str], np.ndarray, dict[str, Any]]]:
+        """Return all arrays by name: dimensions, values and attributes; NaN where nothing is known.
+
+        Raises
+        ------
+        StoreError
+            If a part is damaged, or all would take more memory than 4 GB.
+        """
+        size = sum(
+            prod(array["shape"]) * np.dtype(array["dtype"]).itemsize
+            for array in self._arrays.values()
+        )
+        if size > _LARGEST:
+            raise StoreError(
+                f"{self.path}: has {size / 1e9:.3g} GB unpacked, and at most {_LARGEST / 1e9:g} GB "
+                "are loaded: open it with xarray.open_zarr, which reads what is asked for"
+            )
+        found = {}
+        over_runs = (*self._observables, *RESERVED)
+        for name in sorted(self._told, key=lambda name: name not in over_runs):
+            told = self._told[name]
+            described = {key: each for key, each in told.items() if key != "_ARRAY_DIMENSIONS"}
+            found[name] = (told["_ARRAY_DIMENSIONS"], self._loaded(name), described)
+        return found
+
+    def _loaded(self, name: str) -> np.ndarray:
+        array = self._arrays[name]
+        try:
+            if name not in (*self._observables, *RESERVED):
+                file = self.path / name / ".".join("0" * max(1, len(array["shape"])))
+                return self._decoded(name, file).reshape(array["shape"]).copy()
+            kind = _TEXT if array["dtype"] == "|O" else array["dtype"]
+            full = np.full(array["shape"], _EMPTY.get(name, np.nan), kind)
+            for number in self._numbers(name):
+                values = self._decoded(name, self._file(name, number)).reshape(array["chunks"])
+                place = tuple(slice(r.start, r.stop) for r in self.ranges(number))
+                full[place] = values[tuple(slice(len(r)) for r in self.ranges(number))]
+        except (OSError, RuntimeError, ValueError) as error:
+            reason = f"is damaged ({name}: {error}); resume the sweep to repeat what is lost"
+            raise StoreError(f"{self.path}: {reason}") from None
+        return full
 
     def is_whole(self, number: int) -> bool:
         """Whether all of a block is there and undamaged."""
@@ -230,6 +290,27 @@ class Store:
         with suppress(OSError):
             return self._lock.stat().st_mtime
         return 0.0
+
+
+def unpacked_size(packed: bytes) -> int:
+    """Return the size that a frame of Zstandard says it unpacks to; ValueError if it does not.
+
+    RFC 8878, section 3.1.1.1: a descriptor, a byte of window unless all is one segment, an
+    identifier of a dictionary, and the size in 1, 2, 4 or 8 bytes.
+    """
+    if len(packed) < 6 or packed[:4] != b"\x28\xb5\x2f\xfd":
+        raise ValueError("is not packed by Zstandard")
+    descriptor = packed[4]
+    single, flag = descriptor >> 5 & 1, descriptor >> 6
+    length = (1 if single else 0, 2, 4, 8)[flag]
+    start = 6 - single + (0, 1, 2, 4)[descriptor & 3]
+    if not length or len(packed) < start + length:
+        raise ValueError("does not say what size it unpacks to")
+    return int.from_bytes(packed[start : start + length], "little") + (256 if flag == 1 else 0)
+
+
+def _is_index(text: str) -> bool:
+    return text.isascii() and text.isdigit() and len(text) < 12
 
 
 def _locked(lock) -> bool:

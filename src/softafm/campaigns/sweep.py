@@ -265,7 +265,7 @@ def opened(store: Store) -> "Dataset":
     """Return a store as a dataset that reads values as they are needed."""
     from xarray import open_zarr
 
-    return open_zarr(store.path, chunks=None, consolidated=True)
+    return open_zarr(store.path, chunks=None, consolidated=True, zarr_format=2)
 
 
 def load_sweep(path: str | Path) -> "Dataset":
@@ -276,13 +276,17 @@ def load_sweep(path: str | Path) -> "Dataset":
     ValueError
         If it is no store of a sweep, or a part of it is damaged.
     """
+    from xarray import Dataset
+
     store = Store(Path(path))
+    attributes = dict(store.attributes)
+    coordinates = str(attributes.pop("coordinates", "")).split()
+    arrays = store.load()
     try:
-        return opened(store).load()
-    except (OSError, RuntimeError, ValueError) as error:
-        raise ValueError(
-            f"{path}: is damaged ({error}); resume the sweep to repeat what is lost"
-        ) from None
+        loaded = Dataset(arrays, attrs=attributes)
+        return loaded.set_coords([name for name in coordinates if name in arrays])
+    except ValueError as error:
+        raise StoreError(f"{path}: is damaged ({error})") from None
 
 
 __all__ = ["Busy", "Halted", "conduct", "finish", "load_sweep", "planned", "prepared", "sweep"]

@@ -4,7 +4,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-BRANCHES = ("attractive", "unstable", "repulsive")
+from softafm.result_content import BRANCHES
+
 _APPROACHES, _AMPLITUDES = 2000, 400
 
 

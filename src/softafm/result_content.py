@@ -1,0 +1,172 @@
+"""What results hold: every variable with its unit, and which of them each mode needs."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from xarray import Variable
+
+VARIABLES = {
+    "time": ("s", "time"),
+    "r": ("m", "radial coordinate"),
+    "tip_height": ("m", "tip height above the undeformed surface"),
+    "base_height": ("m", "height of the base: that of the tip on an unbent lever"),
+    "deflection": ("m", "deflection of the lever, positive away from the sample"),
+    "force": ("N", "force on the tip, positive = repulsive"),
+    "contact_radius": ("m", "radius of the largest tension"),
+    "axis_deformation": ("m", "surface displacement under the apex, positive towards the tip"),
+    "viscous_power": ("W", "power dissipated in the sample"),
+    "deformation": ("m", "surface displacement, positive towards the tip"),
+    "gap": ("m", "gap between tip and deformed surface"),
+    "pressure": ("Pa", "pressure on the surface, positive = repulsive"),
+    "force_max": ("N", "largest force"),
+    "force_min": ("N", "smallest force"),
+    "force_mean": ("N", "mean force of a cycle"),
+    "force_min_approach": ("N", "smallest force before the lowest height"),
+    "loop_energy": ("J", "energy dissipated in the motion, -∮F dh0 or -∮F dZ"),
+    "viscous_loss": ("J", "energy dissipated in the sample"),
+    "branch": ("1", "branch of solutions"),
+    "amplitude_ratio": ("1", "amplitude over free amplitude"),
+    "sweep_height": ("m", "mean height of the tip in a sweep"),
+    "mean_height": ("m", "mean height of the tip"),
+    "amplitude": ("m", "amplitude of the tip"),
+    "phase": ("degree", "lag of the deflection behind the drive"),
+    "virial": ("J", "virial, mean of F·(h0 - mean height) over a cycle"),
+    "dissipation": ("J", "energy dissipated in a cycle, -∮F dh0"),
+    "cycles_run": ("1", "cycles that were run"),
+    "cycle_virial": ("J", "virial of each cycle"),
+    "cycle_dissipation": ("J", "energy dissipated in each cycle"),
+    "contact_time": ("s", "time in contact in a cycle"),
+    "indentation": ("m", "largest depth of the surface under the apex"),
+    "jump_time": ("s", "time of elastic jumps"),
+    "jump_energy": ("J", "energy released by elastic jumps"),
+    "x": ("m", "position along a line of a map"),
+    "y": ("m", "position down the lines of a map"),
+    "topography": ("m", "height at which the lever is left, that of the sample included"),
+    "sample_height": ("m", "height of the surface"),
+    "lowest_height": ("m", "lowest height of the tip, or of the base of its lever"),
+    "material": ("1", "number of the material"),
+}
+"""Unit and long name of every variable that a mode returns."""
+
+_DIRECTIONS = {"approach": "falls", "retract": "rises"}
+FORMAT = "softafm result 1"
+"""What the attribute ``format`` of every result says."""
+LARGEST = 2_000_000_000
+"""Size that a result may have in memory to be read, bytes, unless more is allowed."""
+BRANCHES = ("attractive", "unstable", "repulsive")
+"""The values of ``branch`` in an approach curve."""
+
+_RECORDED = ("force_max", "phase", "virial", "dissipation")
+_CURVES = ("tip_height", "force", "contact_radius", "axis_deformation", "viscous_power")
+_HISTORY: dict[str, tuple[str, ...]] = {
+    **dict.fromkeys(_CURVES, ("time",)),
+    "jump_time": ("jump",),
+    "jump_energy": ("jump",),
+}
+PROFILES: dict[str, tuple[str, ...]] = dict.fromkeys(
+    ("deformation", "gap", "pressure"), ("time", "r")
+)
+"""Dimensions of the shapes of the surface; a result holds all of them or none."""
+RISING = ("time", "r", "x", "y")
+"""Coordinates whose values rise from each to the next."""
+SAMPLES = {
+    "time": (2, 10**9),
+    "r": (2, 20_000),
+    "x": (1, 100_000),
+    "y": (1, 100_000),
+    "amplitude_ratio": (1, 100_000),
+    "sweep_height": (0, 10_000),
+}
+"""How many values a coordinate has, at least and at most; movies and arrows are made of them."""
+REGULARISED = ("regularised_range", "given_tabor", "given_range", "edge_slowed")
+"""Attributes, all numbers, of a result whose law had its range enlarged."""
+
+
+@dataclass(frozen=True)
+class Needed:
+    """What the result of a mode must hold for figures, tables and exports to be made of it.
+
+    Parameters
+    ----------
+    variables
+        Dimensions of each; every dimension but ``jump`` has a coordinate of its name, too.
+    described
+        What the attribute ``experiment`` describes besides tip, sample and surface.
+    numbers
+        Attributes that are numbers.
+    gaps
+        Whether values may be NaN, where there is no solution.
+    """
+
+    variables: Mapping[str, tuple[str, ...]]
+    described: str = "motion"
+    numbers: tuple[str, ...] = ()
+    gaps: bool = False
+
+
+NEEDED = {
+    "force-distance": Needed(_HISTORY),
+    "force-spectroscopy": Needed(
+        {**_HISTORY, "base_height": ("time",), "deflection": ("time",)}
+    ),
+    "tapping-cycle": Needed(
+        {**_HISTORY, **dict.fromkeys(("virial", "dissipation", "force_max"), ())}
+    ),
+    "approach-curve": Needed(
+        {
+            **dict.fromkeys(("mean_height", *_RECORDED), ("branch", "amplitude_ratio")),
+            **{
+                f"{direction}_{name}": ("sweep_height",)
+                for direction in _DIRECTIONS
+                for name in ("amplitude", *_RECORDED)
+            },
+        },
+        numbers=("solver_taps",),
+        gaps=True,
+    ),
+    "amplitude-modulation": Needed(
+        dict.fromkeys(("topography", "phase", "dissipation"), ("y", "x")),
+        described="imaging",
+        numbers=("different_pixels",),
+        gaps=True,
+    ),
+    "force-volume": Needed(
+        dict.fromkeys(("force_min", "loop_energy", "indentation"), ("y", "x")),
+        described="imaging",
+        numbers=("different_pixels",),
+        gaps=True,
+    ),
+}  # fmt: skip
+"""By mode."""
+
+
+def variable(name: str, dims, values) -> "Variable":
+    """Return values under a known name, with its unit and long name as attributes.
+
+    A name may be prefixed by ``approach_`` or ``retract_``.
+    """
+    from xarray import Variable
+
+    units, long_name = VARIABLES[name] if name in VARIABLES else _swept(name)
+    array = np.asarray(values)
+    array = array if array.dtype.kind == "U" else array.astype(float)
+    return Variable(dims, array, {"units": units, "long_name": long_name})
+
+
+def unit_of(name: str) -> str | None:
+    """Return the unit of a variable; None if no mode returns one of this name."""
+    if name in VARIABLES:
+        return VARIABLES[name][0]
+    direction, _, rest = name.partition("_")
+    return _swept(name)[0] if direction in _DIRECTIONS and rest in VARIABLES else None
+
+
+def _swept(name: str) -> tuple[str, str]:
+    """Return unit and long name of what is recorded in a sweep of the height."""
+    direction, _, rest = name.partition("_")
+    units, long_name = VARIABLES[rest]
+    return units, f"{long_name}, while the height {_DIRECTIONS[direction]}"
