@@ -32,6 +32,11 @@ def read_trajectory(path: str | Path, moves: Moves = "tip") -> Trajectory:
     return Trajectory(*read_path(path, moves))
 
 
+def read_base_trajectory(path: str | Path) -> Trajectory:
+    """Read a motion of the base of a lever, as ``read_trajectory``."""
+    return read_trajectory(path, "base")
+
+
 def read_path(path: str | Path, moves: Moves = "tip") -> tuple[np.ndarray, np.ndarray]:
     """Read times (s) and heights (m) from a CSV file, to draw a ``Trajectory`` by.
 

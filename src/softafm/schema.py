@@ -6,7 +6,6 @@ its fields are the table's other keys, and ``build`` returns the object.
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, fields
-from functools import partial
 from inspect import Parameter, signature
 from pathlib import Path
 from typing import Annotated, Any, ClassVar, Literal, get_args, get_origin, get_type_hints
@@ -60,7 +59,7 @@ from softafm.entries import (
     file_of,
     refused_as,
 )
-from softafm.measured import read_trajectory
+from softafm.measured import read_base_trajectory, read_trajectory
 from softafm.motions import Sine, Trajectory, Triangle
 from softafm.refusals import ConfigError, all_of, as_written, nearest, one_of, problems, shown
 from softafm.rheology import (
@@ -225,7 +224,7 @@ class TrajectoryMotion(Table):
 class BaseTrajectoryMotion(TrajectoryMotion):
     """``[motion] shape = "trajectory"`` of the base of a lever."""
 
-    file: Annotated[Any, *file_of(partial(read_trajectory, moves="base"))]
+    file: Annotated[Any, *file_of(read_base_trajectory)]
 
 
 @dataclass(frozen=True)

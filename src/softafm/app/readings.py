@@ -123,13 +123,14 @@ def try_out(reader: str, path: str) -> tuple[None, list]:
     ValueError
         If the reader refuses it, or it takes too long.
     """
-    from softafm.schema import measured_moduli, read_dma
+    from softafm.rheology.dma_table import read_moduli
+    from softafm.schema import measured_moduli
 
     module, _, name = reader.partition(":")
     read = getattr(import_module(module), name)
     started = process_time()
     found = read(Path(path))
-    if read is read_dma:
+    if read is read_moduli:
         with suppress(ValueError):  # which the form says at another field
             measured_moduli(found, poisson=0.5)
     work = process_time() - started
