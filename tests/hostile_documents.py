@@ -89,14 +89,18 @@ def of_tables(chance: random.Random) -> Iterator[Input]:
         lines = [f"{x},{y}" for x, y in rows]
         whole = "\n".join([f"{first},{second}", *lines]) + "\n"
         yield csv_input(table, "sound", whole.encode(), 0)
-        for entry in ("nan", "inf", "-inf", "1e400", "x", "1,", "--1", "0x5", "²", "\x00"):
+        for entry in ("nan", "inf", "-inf", "1e400", "x", "--1", "0x5", "²", "1_0", "\x00"):
             spoiled = [*lines]
             at = chance.randrange(1, len(lines))
             spoiled[at] = f"{rows[at][0]},{entry}"
             text = "\n".join([f"{first},{second}", *spoiled])
-            if entry != "1,":
-                yield csv_input(table, "a number that is none", text.encode())
+            yield csv_input(table, "a number that is none", text.encode())
+        commas = [f"{x},5,{y},5" for x, y in rows]
+        text = "\n".join([f"{first},{second}", *commas])
+        yield csv_input(table, "decimal commas", text.encode())
         at = chance.randrange(1, len(lines))
+        long = [*lines[:at], f"{lines[at]},7", *lines[at + 1 :]]
+        yield csv_input(table, "too many fields", "\n".join([f"{first},{second}", *long]).encode())
         short = [*lines[:at], str(rows[at][0]), *lines[at + 1 :]]
         yield csv_input(table, "too few fields", "\n".join([f"{first},{second}", *short]).encode())
         for header in (first, f"{first},other (nm)", f"{first},{second.split()[0]} (odd)",

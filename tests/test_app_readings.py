@@ -253,7 +253,7 @@ def test_moduli_of_a_long_record_are_tried_as_the_form_uses_them(tmp_path):
     path = tmp_path / "dma.csv"
     header = "frequency (Hz),storage (Pa),loss (Pa)"
     np.savetxt(path, rows, delimiter=",", header=header, comments="")
-    assert try_out("softafm.rheology.dma:read_dma", str(path)) == (None, [])
+    assert try_out("softafm.rheology.dma_table:read_moduli", str(path)) == (None, [])
 
 
 def test_an_uploaded_result_is_drawn_and_comes_back_whole(page):

@@ -64,8 +64,7 @@ class Run:
             trigger=np.inf,
         )
         self.target = self.surface.target
-        self.records = np.empty(_CHUNK, RECORD_FIELDS)
-        self.chunks: list[np.ndarray] = []
+        self.records, self.count = np.empty(2 * _CHUNK, RECORD_FIELDS), 0
         self.shapes: list[Shape] | None = [] if keep_shapes else None
         self.coarsest = 0.0, 0.0
         self.slips, self.end_of_slip = 0, -np.inf
@@ -77,7 +76,7 @@ class Run:
     def steps(self) -> Iterator[float]:
         """Run, yielding the fraction of the motion done at every return of the compiled loop."""
         surface = self.surface
-        self._keep(surface.settle(), surface.fields[DEFORMATION][None])
+        self._settle()
         if surface.clock["force"] >= self._trigger(-np.inf):
             raise ValueError(
                 f"setpoint_force = {self.motion.setpoint_force:g} N: must be above the force at "
@@ -124,7 +123,7 @@ class Run:
             surface.clock["contraction"] = np.inf
         memory, misses = None, []
         for self.cycle in range(1, _MOST_CYCLES + 1):
-            self.chunks.clear()
+            self.count = 0
             self.falls.clear()
             if self.shapes is not None:
                 self.shapes.clear()
@@ -167,7 +166,7 @@ class Run:
         surface.functions = (height, *surface.functions[1:])
         surface.parameters = surface.parameters._replace(height=parameters)
         surface.clock["time"] = self.breaks[1]
-        self.chunks[-1][-1]["time"] = surface.time
+        self.records[self.count - 1]["time"] = surface.time
 
     def _begin_piece(self, stop):
         """Forget the past shapes: beyond a break of the motion they do not extrapolate."""
@@ -180,12 +179,27 @@ class Run:
         surface = self.surface
         finest, coarsest = surface.coarseness_allowed
         controls = self.controls._replace(end=float(stop), finest=finest, coarsest=coarsest)
+        records = self._free_records()
         shapes = np.empty((0 if self.shapes is None else _CHUNK, surface.mesh.nodes.size))
         outcome, count = advance(
             *surface.functions[:3], surface.parameters, surface.background, surface.mesh, controls,
-            surface.fields, surface.clock, self.records, shapes, surface.room(),
+            surface.fields, surface.clock, records, shapes, surface.room(),
         )  # fmt: skip
-        return outcome, self.records[:count], shapes[:count]
+        return outcome, records[:count], shapes[:count]
+
+    def _free_records(self) -> np.ndarray:
+        """Return records that are yet to be filled."""
+        if self.count + _CHUNK > self.records.size:
+            longer = np.empty(2 * self.records.size, RECORD_FIELDS)
+            longer[: self.count] = self.records[: self.count]
+            self.records = longer
+        return self.records[self.count : self.count + _CHUNK]
+
+    def _settle(self):
+        """Equilibrate at frozen memory, and keep a record of it."""
+        records = self._free_records()[:1]
+        records[0] = self.surface.settle()
+        self._keep(records, self.surface.fields[DEFORMATION][None])
 
     def _fall(self, stop):
         """Pass a short step where no stable shape is near, and note a jump if it is one."""
@@ -199,14 +213,13 @@ class Run:
         self.end_of_slip = start + 20 * duration
         self._creep_down(end, duration)
         clock["time"], clock["step"] = end, 10 * self.controls.shortest_step
-        record = surface.settle()
+        self._settle()
         self.falls.append(surface.time)
         if abs(clock["axis_gap"] - gap) > 0.1 * gap or abs(clock["edge"] - edge) > 0.05 * edge:
-            record["jump"] = before - surface.energy()
+            self.records[self.count - 1]["jump"] = before - surface.energy()
         else:
             # No fall but a slip: the edge is caught by nodes too far apart for a contact so slack.
             surface.target = max(surface.target / 2, 0.02)
-        self._keep(record, surface.fields[DEFORMATION][None])
 
     def _creep_down(self, time, duration):
         """Follow a fall, ``duration`` long and under the tip height of ``time``, as a fast creep.
@@ -259,9 +272,9 @@ class Run:
         surface.fields = surface.fields[:-1].copy()
 
     def _keep(self, records, shapes):
-        """Keep copies of records and shapes, and the worst coarseness of the finest mesh."""
+        """Keep the records just filled, shapes, and the worst coarseness of the finest mesh."""
         surface = self.surface
-        self.chunks.append(records.copy())
+        self.count += records.size
         if self.shapes is not None:
             for record, shape in zip(records, shapes, strict=True):
                 self.shapes.append(Shape(record["frame"], surface.mesh, shape.copy()))
@@ -273,7 +286,7 @@ class Run:
     def history(self, seconds: float) -> History:
         """Collect what was recorded; ``seconds`` is the time the run took."""
         surface = self.surface
-        records = _join(self.chunks)
+        records = self.records[: self.count]
         time, jumped = records["time"], records["jump"] != 0
         breaks = np.flatnonzero(np.isin(time, self.breaks[1:-1]))
         fallen = np.flatnonzero(np.isin(time, self.falls))
@@ -365,16 +378,6 @@ class Run:
             f" as that of a Lennard-Jones law of its range; beyond {_SHARPEST:g} times the contact "
             "edge may catch on the nodes, and forces be off by several per cent. Smooth the law",
         )
-
-
-def _join(chunks: list[np.ndarray]) -> np.ndarray:
-    """Concatenate arrays of records: NumPy would compare their types one by one."""
-    records = np.empty(sum(chunk.size for chunk in chunks), RECORD_FIELDS)
-    at = 0
-    for chunk in chunks:
-        records[at : at + chunk.size] = chunk
-        at += chunk.size
-    return records
 
 
 def _stagnates(misses: list[float]) -> bool:

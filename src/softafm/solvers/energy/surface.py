@@ -13,7 +13,6 @@ from softafm.solvers.energy.layout import (
     LOAD,
     MEMORY,
     ORIGIN,
-    RECORD_FIELDS,
     Background,
     Mesh,
     Parameters,
@@ -78,7 +77,7 @@ class Surface:
         self.finest_spacing, self.finest_used = self.mesh.edge_spacing, self.level
         self.archive = self.mesh, 0.0
         modes = self.parameters.retardation.size
-        self._room = new_room(self.mesh.nodes.size, self.mesh.far.size, modes)
+        self._rooms: dict[tuple[int, int, int], Room] = {}
         self.fields = np.zeros((MEMORY + modes, self.mesh.nodes.size))
         self.clock = new_clock()
         self.clock["time"] = breaks[0]
@@ -103,10 +102,10 @@ class Surface:
 
     def room(self) -> Room:
         """Return memory for the compiled loops to work in."""
-        nodes, far, modes = self.mesh.nodes.size, self.mesh.far.size, len(self.fields) - MEMORY
-        if self._room.fields.shape != (10 + 4 * modes, nodes) or self._room.far.shape[1] != far:
-            self._room = new_room(nodes, far, modes)
-        return self._room
+        size = self.mesh.nodes.size, self.mesh.far.size, len(self.fields) - MEMORY
+        if size not in self._rooms:
+            self._rooms[size] = new_room(*size)
+        return self._rooms[size]
 
     @property
     def coarseness_allowed(self) -> tuple[float, float]:
@@ -173,15 +172,15 @@ class Surface:
         )  # fmt: skip
         return result
 
-    def settle(self) -> np.ndarray:
-        """Equilibrate at frozen memory and return the state as a record, in an array of one."""
+    def settle(self) -> tuple[float, ...]:
+        """Equilibrate at frozen memory and return the state as ``RECORD_FIELDS`` lists it."""
         mesh, clock = self.mesh, self.clock
-        height, profile, law, potential = self.functions
+        height_at, profile, law, potential = self.functions
         n, frame = mesh.nodes.size, clock["frame"]
         tip, pressure, scratch = np.empty(n), np.empty(n), np.empty(n)
         rise, far_work = np.empty(mesh.far.size), np.empty((3, mesh.far.size))
         raise_tip(profile, self.parameters.tip, mesh, frame, scratch, tip, rise)
-        h0 = height(self.time, self.parameters.height)
+        h0 = height_at(self.time, self.parameters.height)
         base = h0 - self.parameters.law[ORIGIN] + tip
         memory = self.memory()
         instantaneous, modes = self.parameters.compliance[0], self.parameters.compliance[1:]
@@ -213,15 +212,11 @@ class Surface:
         clock["edge"], clock["axis_gap"], clock["force"] = edge, gap[0], force
         clock["force_scale"] = max(clock["force_scale"], abs(force))
         clock["history"] = 1
-        records = np.zeros(1, RECORD_FIELDS)
-        record = records[0]
-        record["time"], record["force"] = self.time, force
-        record["height"] = h0 + clock["deflection"]
-        record["edge"], record["axis"], record["frame"] = edge, u[0], frame
-        record["loss"] = 2 * np.pi * frame * rates @ np.sum((lag @ mesh.stiffness) * lag, axis=1)
+        loss = 2 * np.pi * frame * rates @ np.sum((lag @ mesh.stiffness) * lag, axis=1)
         spacing = frame * mesh.edge_spacing
-        record["coarseness"] = spacing / max(zone, 1e-9 * frame) if edge else 0.0
-        return records
+        coarseness = spacing / max(zone, 1e-9 * frame) if edge else 0.0
+        height = h0 + clock["deflection"]
+        return self.time, height, force, edge, u[0], loss, coarseness, frame, 0.0
 
     def energy(self) -> float:
         """Energy of the contact as an instantaneous elastic one, to infinity, and the lever, J."""
