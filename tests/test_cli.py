@@ -9,6 +9,7 @@ import subprocess
 import sys
 import tempfile
 import warnings
+from importlib.util import find_spec
 from pathlib import Path
 
 import pytest
@@ -616,6 +617,25 @@ def test_importing_the_package_reads_nothing_heavy():
     code = f"import sys, softafm, softafm.cli; print({heavy} & {{*sys.modules}})"
     said = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert said.stdout == "set()\n"
+
+
+def test_running_and_informing_import_neither_dask_nor_pint(tmp_path):
+    assert all(map(find_spec, ("dask", "pint")))  # or there would be nothing to find
+    code = """
+import sys
+from softafm.cli import main
+
+for name in ("attard-triangle", "ldpe-movie", "ps-approach-curve"):
+    main(["example", name])
+    assert main(["info", f"{name}.toml"]) == 0
+    assert main(["run", f"{name}.toml"]) == 0
+assert main(["show", "attard-triangle.toml"]) == 0
+print({name.partition(".")[0] for name in sys.modules} & {"dask", "distributed", "pint", "zarr"})
+"""
+    run = subprocess.run(
+        [sys.executable, "-c", code], cwd=tmp_path, capture_output=True, text=True, check=True
+    )
+    assert run.stdout.splitlines()[-1] == "set()"
 
 
 @posix
