@@ -225,7 +225,7 @@ def _provenance(mode, contact, parts, solver, tolerance, warnings, diagnostics) 
         "tabor_instantaneous": contact.tabor_instantaneous,
         "tabor_relaxed": contact.tabor_relaxed,
         "cohesive_length": contact.cohesive_length,
-        "warnings": "\n".join(warnings),
+        "warnings": "\n".join(map(str, warnings)),
         **{f"solver_{name}": value for name, value in diagnostics.items()},
     }
 
