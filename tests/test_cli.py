@@ -491,7 +491,7 @@ def test_a_folder_or_a_wrong_suffix_is_no_output(folder, softafm):
           "motion.amplitude=0.1 nm"), "motion.mean_height = '0 nm': start height"),
         (("example", "ldpe"), "example 'ldpe': unknown;"),
         (("plot", "none.nc"), "none.nc: no such file"),
-        (("plot", "ldpe-tapping.toml"), "ldpe-tapping.toml: not a readable NetCDF file"),
+        (("plot", "ldpe-tapping.toml"), "ldpe-tapping.toml: is a file to be run, not a result"),
         (("plot", "none.nc", "--out", "picture.bmp"), "--out = picture.bmp: must end in .png"),
         (("export", "none.nc", "--out", "a.csv"), "none.nc: no such file"),
         (("show", "none.toml"), "none.toml: no such file"),

@@ -21,7 +21,7 @@ _RANGES = {
     "m": _Range(0, 1e-2, "nm", 1e-9),
     "m/s": _Range(0, 10, "nm/s", 1e-9),
     "N": _Range(0, 1, "nN", 1e-9),
-    "J": _Range(0, 1e-12, "zJ", 1e-21),
+    "J": _Range(0, 1e-9, "zJ", 1e-21),
     "J/m²": _Range(0, 10, "mJ/m²", 1e-3),
     "V": _Range(0, 20, "mV", 1e-3),
     "Pa": _Range(1e-6, inf, "GPa", 1e9),
