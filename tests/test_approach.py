@@ -345,3 +345,13 @@ def test_what_is_no_lever_or_no_ratio_is_refused(lever, ratios, line):
     )
     with pytest.raises(ValueError, match=line):
         sa.approach_curve(contact, lever, 15e-9, ratios)
+
+
+def test_a_fluid_is_refused_with_a_way_out():
+    fluid = sa.Contact(PS.tip, sa.Maxwell(1e9, 1e-3, 0.3), PS.surface)
+    with pytest.raises(ValueError, match="flows") as refused:
+        sa.approach_curve(fluid, LEVER, 15e-9, [0.9])
+    assert str(refused.value) == (
+        "no height goes with an amplitude: the sample 'maxwell' flows, so that the tip sinks "
+        "deeper with every cycle; take tapping_cycle with a number of cycles, or force_distance"
+    )

@@ -9,6 +9,7 @@ import subprocess
 import sys
 import tempfile
 import warnings
+from importlib.util import find_spec
 from pathlib import Path
 
 import numpy as np
@@ -510,7 +511,7 @@ def test_a_folder_or_a_wrong_suffix_is_no_output(folder, softafm):
           "motion.amplitude=0.1 nm"), "motion.mean_height = '0 nm': start height"),
         (("example", "ldpe"), "example 'ldpe': unknown;"),
         (("plot", "none.nc"), "none.nc: no such file"),
-        (("plot", "ldpe-tapping.toml"), "ldpe-tapping.toml: not a readable NetCDF file"),
+        (("plot", "ldpe-tapping.toml"), "ldpe-tapping.toml: is a file to be run, not a result"),
         (("plot", "none.nc", "--out", "picture.bmp"), "--out = picture.bmp: must end in .png"),
         (("export", "none.nc", "--out", "a.csv"), "none.nc: no such file"),
         (("show", "none.toml"), "none.toml: no such file"),
@@ -636,6 +637,25 @@ def test_importing_the_package_reads_nothing_heavy():
     code = f"import sys, softafm, softafm.cli; print({heavy} & {{*sys.modules}})"
     said = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert said.stdout == "set()\n"
+
+
+def test_running_and_informing_import_neither_dask_nor_pint(tmp_path):
+    assert all(map(find_spec, ("dask", "pint")))  # or there would be nothing to find
+    code = """
+import sys
+from softafm.cli import main
+
+for name in ("attard-triangle", "ldpe-movie", "ps-approach-curve"):
+    main(["example", name])
+    assert main(["info", f"{name}.toml"]) == 0
+    assert main(["run", f"{name}.toml"]) == 0
+assert main(["show", "attard-triangle.toml"]) == 0
+print({name.partition(".")[0] for name in sys.modules} & {"dask", "distributed", "pint", "zarr"})
+"""
+    run = subprocess.run(
+        [sys.executable, "-c", code], cwd=tmp_path, capture_output=True, text=True, check=True
+    )
+    assert run.stdout.splitlines()[-1] == "set()"
 
 
 @posix

@@ -224,3 +224,13 @@ def _inline(value):
     if isinstance(value, list):
         return "[" + ", ".join(map(_inline, value)) + "]"
     return json.dumps(value)
+
+
+def test_documents_install_a_copy_of_the_repository_as_it_is_not_published():
+    pages = [DOCS.parent / "README.md", *sorted(DOCS.glob("*.md"))]
+    texts = {page.name: page.read_text(encoding="utf-8") for page in pages}
+    for name, text in texts.items():
+        targets = re.findall(r"pip install (?:-e )?['\"]?([^\s'\"`]+)", text)
+        assert all(target.startswith(".") for target in targets), name
+    for name in ("README.md", "index.md", "page.md"):
+        assert "not on PyPI" in texts[name]

@@ -326,6 +326,7 @@ contacts = st.builds(
 )
 
 
+@pytest.mark.filterwarnings("ignore::softafm.errors.DoubtfulValueWarning")
 @given(contacts, st.floats(3, 12), st.floats(-3, 1), st.floats(-2, 2).map(lambda x: 10**x))
 @settings(max_examples=15, deadline=None)
 def test_any_contact_obeys_the_laws(contact, start, turn, rate):

@@ -90,6 +90,7 @@ def test_tension_is_largest_where_the_law_says(law):
     assert law.pressure(gap) == pytest.approx(around.min(), rel=1e-6)
 
 
+@pytest.mark.filterwarnings("ignore::softafm.errors.DoubtfulValueWarning")
 @given(positive, positive)
 def test_law_from_its_work_of_adhesion(w, z):
     law = sa.LennardJones.from_work_of_adhesion(W=0.05 * w, z0=3e-10 * z)
@@ -514,6 +515,7 @@ def test_whole_floats_count_cycles():
     assert sa.Sine(1e-8, 1e-9, 1e5, 3.0).cycles == 3
 
 
+@pytest.mark.filterwarnings("ignore::softafm.errors.DoubtfulValueWarning")
 @given(st.floats(-20, 20), st.floats(0, 20))
 def test_a_turn_above_the_start_is_refused(start, rise):
     message = refusal(sa.Triangle, start=start, turn=start + rise, speed=1.0)

@@ -513,7 +513,7 @@ def test_a_crossed_fold_is_warned_of():
             sa.force_distance(contact, RAMP, solver=FIXED_STEPS[1])
             told = [str(w.message) for w in caught]
         except sa.DivergedError as error:
-            told = list(error.history.warnings)
+            told = list(map(str, error.history.warnings))
     assert any("beyond an elastic instability" in text for text in told)
 
 

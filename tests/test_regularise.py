@@ -27,7 +27,7 @@ TIPS = [
     sa.Sphere(5e-6),
     sa.Cone(np.radians(20), 8e-9),
     sa.FlatPunch(1e-6, 1e-7),
-    sa.Hyperboloid(np.radians(30), 20e-9),
+    sa.Hyperboloid(20e-9, np.radians(30)),
 ]
 RUBBER = sa.Elastic(2e6, 0.5)
 SOFT = sa.Contact(sa.Paraboloid(1e-6), RUBBER, LAWS[0])

@@ -253,6 +253,31 @@ def test_saved_and_loaded_unchanged(results, name, tmp_path):
     xr.testing.assert_identical(sa.load(tmp_path / "again.nc"), results[name])
 
 
+@pytest.mark.parametrize("name", ["ramp, profiles", "tap", "approach"])
+def test_saved_files_are_as_xarray_writes_them(results, name, tmp_path):
+    sa.save(results[name], tmp_path / "ours.nc")
+    results[name].to_netcdf(tmp_path / "theirs.nc", engine="h5netcdf")
+    ours, theirs = (
+        xr.load_dataset(tmp_path / f"{whose}.nc", engine="h5netcdf") for whose in ("ours", "theirs")
+    )
+    xr.testing.assert_identical(ours, theirs)
+    assert list(ours.variables) == list(theirs.variables)
+    for variable, other in zip(ours.variables.values(), theirs.variables.values(), strict=True):
+        ignored = {"source": None}
+        assert str(variable.encoding | ignored) == str(other.encoding | ignored)
+
+
+def test_what_a_user_adds_is_saved(result, tmp_path):
+    added = result.assign(
+        count=("jump", [3] * result.sizes["jump"]),
+        seen=("time", result["force"].values > 0),
+        offset=result["force"].astype("f4").assign_attrs(_FillValue=np.float32(-1)),
+    ).assign_coords(phase=("time", np.linspace(0, 1, result.sizes["time"])), place=3.0)
+    sa.save(added, tmp_path / "added.nc")
+    xr.testing.assert_equal(sa.load(tmp_path / "added.nc"), added)
+    assert set(sa.load(tmp_path / "added.nc").coords) == {"time", "phase", "place"}
+
+
 def test_a_result_with_warnings_and_odd_names_survives(result, tmp_path):
     odd = result.assign_attrs(warnings="one\ntwo µm ≥ 3", note="ünïcode")
     path = tmp_path / "a result, with spaces & ümläuts.nc"

@@ -100,7 +100,7 @@ def test_a_melt_that_snaps_in_within_picoseconds_has_a_finite_energy(surface):
         (lambda: samples.pdms(4.9), "^mixing_ratio = 4.9: must be from 5 to 33, as was measured$"),
         (lambda: samples.pdms(34), "^mixing_ratio = 34: must be from 5 to 33"),
         (lambda: samples.pdms("10:1"), "^mixing_ratio = '10:1': must be a number"),
-        (lambda: samples.pdms(float("nan")), "^mixing_ratio = nan .*: must be a finite number"),
+        (lambda: samples.pdms(float("nan")), "^mixing_ratio = nan: must be a finite number"),
         (lambda: samples.epoxy(0.51), "^poisson = 0.51: must be above -1 and at most 0.5"),
     ],
 )

@@ -304,7 +304,7 @@ E0 = 4e9 * OK
                 sa.SampleMap(replace(PS, sample=sa.Maxwell(1e9, 1e3, 0.4)), 1e-6, height=OK),
                 TAPPING,
             ),
-            r"pixel \(0, 0\): cycles = 'steady': the sample 'maxwell' flows",
+            r"pixel \(0, 0\): no height goes with an amplitude: the sample 'maxwell' flows",
         ),
     ],
 )

@@ -197,6 +197,7 @@ def test_files_without_a_profile_are_refused(tmp_path, text, message):
         tips.read_tip_profile(tmp_path / "none.csv")
 
 
+@pytest.mark.filterwarnings("ignore::softafm.errors.DoubtfulValueWarning")
 @pytest.mark.parametrize(
     ("r", "height", "message"),
     [

@@ -9,7 +9,7 @@ from softafm import indentation, samples, solvers
 from softafm.animation import animate
 from softafm.cantilever import Cantilever
 from softafm.contact import Contact
-from softafm.errors import AccuracyWarning, DivergedError
+from softafm.errors import AccuracyWarning, DivergedError, DoubtfulValueWarning
 from softafm.laboratory_drawing import plot_contact
 from softafm.modes.approach import approach_curve
 from softafm.modes.force_distance import force_distance
@@ -82,6 +82,7 @@ __all__ = [
     "CustomSurface",
     "CustomTip",
     "DivergedError",
+    "DoubtfulValueWarning",
     "Dugdale",
     "Elastic",
     "Exponential",

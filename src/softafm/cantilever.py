@@ -32,7 +32,7 @@ class Cantilever:
     frequency: float | None = None
 
     def __post_init__(self):
-        units = {"stiffness": "N/m", "quality_factor": "(no unit)", "frequency": "Hz"}
+        units = {"stiffness": "N/m", "quality_factor": "", "frequency": "Hz"}
         for name, unit in units.items():
             value = getattr(self, name)
             if value is not None or name == "stiffness":

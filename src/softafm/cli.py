@@ -18,6 +18,8 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from softafm.errors import AccuracyWarning, DoubtfulValueWarning
+
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
     from xarray import Dataset
@@ -54,7 +56,8 @@ class _Failure(Exception):
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run the command line and return its exit code: 0 success, 2 bad input, 1 failure."""
     try:
-        code = app(args=arguments, prog_name="softafm", standalone_mode=False)
+        with _visible_warnings():
+            code = app(args=arguments, prog_name="softafm", standalone_mode=False)
         return _interrupted() if code == _TYPER_INTERRUPTED else int(code or SUCCESS)
     except typer.TyperException as error:  # how typer reports a wrong option or argument
         return _complain(f"{error.format_message()} (see softafm --help)", BAD_INPUT)
@@ -146,14 +149,13 @@ def _carried_out(what: str, run: "Callable[..., Dataset]") -> "Dataset":
     """Return what a run gives, shown as it goes on; why it ends early is told in one line."""
     from softafm.config import ConfigError
 
-    with _visible_warnings():
-        try:
-            with _progress() as progress:
-                return run(progress)
-        except ConfigError as error:
-            raise _BadInput(str(error)) from error
-        except RuntimeError as error:
-            raise _Failure(f"the {what} failed: {error}") from error
+    try:
+        with _progress() as progress:
+            return run(progress)
+    except ConfigError as error:
+        raise _BadInput(str(error)) from error
+    except RuntimeError as error:
+        raise _Failure(f"the {what} failed: {error}") from error
 
 
 def _cores() -> int:
@@ -205,10 +207,9 @@ def plot(
         out = _output(out, f"{results[0].stem}{kind}.png", _PICTURES, force)
 
         from softafm.plotting import plot as draw
-        from softafm.results import load_apart
         from softafm.storyboard import plot_profiles
 
-        datasets = [load_apart(path) for path in results]
+        datasets = [_load(path) for path in results]
         if profiles:
             figure = plot_profiles(datasets[0])
         else:
@@ -230,7 +231,7 @@ def animate(
 ) -> None:
     """Write a movie of tip and surface; needs a result run with --profiles."""
     with _bad_input():
-        from softafm import animation, results
+        from softafm import animation
 
         out = _output(out, "", animation.SUFFIXES, force)
         write = partial(
@@ -242,10 +243,19 @@ def animate(
             progress=sys.stderr.isatty(),
         )
         try:
-            _save(partial(write, results.load_apart(result)), out, force)
+            _save(partial(write, _load(result)), out, force)
         except RuntimeError as error:
             raise _Failure(str(error)) from error
     typer.echo(f"saved {out}")
+
+
+def _load(path: Path) -> "Dataset":
+    """Read a result; ValueError, or OSError, if it is none."""
+    from softafm import results
+    from softafm.takers import refuse_other_than_result
+
+    refuse_other_than_result(path)
+    return results.load_apart(path)
 
 
 def _time(option: str, written: str | None) -> float | None:
@@ -300,7 +310,7 @@ def export(
 
         from softafm import export_gwyddion, results
 
-        dataset = results.load_apart(result)
+        dataset = _load(result)
         write = export_gwyddion if out.suffix.lower() == ".gwy" else results.export
         try:
             _save(partial(write, dataset), out, force)
@@ -533,15 +543,14 @@ def _heeding_interrupts() -> Iterator[Callable[[], None]]:
 
 @contextmanager
 def _visible_warnings() -> Iterator[None]:
-    """Print warnings about the result as one line each, once; leave all others as they are."""
-    from softafm import AccuracyWarning
-
+    """Print warnings about input and result as one line each, once; leave others as they are."""
     with warnings.catch_warnings():
         warnings.simplefilter("always", AccuracyWarning)
+        warnings.simplefilter("default", DoubtfulValueWarning)
         usual, told = warnings.showwarning, set()
 
         def show(message, category, *place, **options):
-            if issubclass(category, AccuracyWarning):
+            if issubclass(category, AccuracyWarning | DoubtfulValueWarning):
                 text = " ".join(str(message).split())
                 if text not in told:
                     print(f"softafm: warning: {text}", file=sys.stderr)

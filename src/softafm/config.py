@@ -14,6 +14,7 @@ from softafm.modes.force_distance import ramp_observables
 from softafm.modes.start import carry, refuse_start_inside, refuse_unable, regularised
 from softafm.modes.tapping import tap_observables
 from softafm.refusals import ConfigError, as_written, nearest, one_of, shown, unknown
+from softafm.takers import refuse_result, refuse_unless
 from softafm.toml_text import parse
 
 if TYPE_CHECKING:
@@ -179,6 +180,7 @@ def load_document(path: str | Path) -> dict[str, Any]:
     """Return the tables of a TOML file; ConfigError if it cannot be read."""
     path, name = Path(path), str(path)
     try:
+        refuse_result(path)
         if not path.is_file():
             raise ConfigError([f"{name}: {'is a directory' if path.is_dir() else 'no such file'}"])
         size = path.stat().st_size
@@ -250,8 +252,7 @@ def experiment_from(
     ConfigError
         As ``load_experiment``.
     """
-    if "map" in document:
-        raise ConfigError(["map: the file describes a map, which 'softafm scan' takes"])
+    refuse_unless(document, "run")
     problems: list[str] = []
     mode = document.get("mode")
     known = ["mode", *_TABLES, "cantilever", *_OPTIONAL_TABLES]

@@ -11,7 +11,7 @@ from pydantic import AfterValidator, BeforeValidator, Field, ValidationInfo
 
 from softafm import units
 from softafm._validate import finite, poisson_ratio, positive, tabor_of, tolerance_of, whole
-from softafm.refusals import one_of
+from softafm.refusals import nearest
 
 _MOST_ENTRIES = 1000
 _MOST_PIXELS = 4096
@@ -109,7 +109,7 @@ def choice_of(choices: Mapping[str, Any]) -> Any:
 
     def read(written: Any) -> Any:
         if not isinstance(written, str) or written not in choices:
-            raise ValueError(f"must be {one_of(list(choices))}")
+            raise ValueError(nearest(written, list(choices)))
         return choices[written]
 
     return Annotated[Any, BeforeValidator(read), Input("choice", choices=tuple(choices))]

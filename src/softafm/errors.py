@@ -2,7 +2,21 @@
 
 
 class AccuracyWarning(UserWarning):
-    """A run could not resolve what its tolerance asks for; the text says what, and the remedy."""
+    """A run could not resolve what its tolerance asks for; the text says what, and the remedy.
+
+    Attributes
+    ----------
+    severity
+        How bad it is beside others of its kind, in any unit; 0 if that is not known.
+    """
+
+    def __init__(self, text: str = "", severity: float = 0.0):
+        super().__init__(text)
+        self.severity = severity
+
+
+class DoubtfulValueWarning(UserWarning):
+    """A value is of a size that hardly any experiment has; the text says what may be meant."""
 
 
 class DivergedError(RuntimeError):

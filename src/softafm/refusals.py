@@ -2,11 +2,12 @@
 
 import re
 from collections.abc import Mapping, Sequence
-from difflib import get_close_matches
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from pydantic import BaseModel
+
+from softafm.suggestions import meant
 
 _LONGEST_SHOWN = 60
 _MOST_TOLD = 50
@@ -88,9 +89,9 @@ def unknown(key: str, valid: Sequence[str], path: str) -> str:
 def nearest(given: object, valid: Sequence[str]) -> str:
     """Say which of the valid names was probably meant, or all of them."""
     text = given[:_LONGEST_SHOWN] if isinstance(given, str) else ""
-    near = get_close_matches(text, valid, n=1, cutoff=0.6)
+    near = meant(text, valid)
     if near:
-        return f"did you mean '{near[0]}'? It must be {one_of(valid)}"
+        return f"did you mean {one_of(near)}? It must be {one_of(valid)}"
     return f"must be {one_of(valid)}"
 
 

@@ -154,7 +154,8 @@ def variable(name: str, dims, values) -> "Variable":
     units, long_name = VARIABLES[name] if name in VARIABLES else _swept(name)
     array = np.asarray(values)
     array = array if array.dtype.kind == "U" else array.astype(float)
-    return Variable(dims, array, {"units": units, "long_name": long_name})
+    # On its usual path xarray imports dask to see whether this is one of its arrays.
+    return Variable(dims, array, {"units": units, "long_name": long_name}, fastpath=True)
 
 
 def unit_of(name: str) -> str | None:

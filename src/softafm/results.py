@@ -13,13 +13,33 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 import softafm
+from softafm.netcdf import file_content
 from softafm.result_content import FORMAT, LARGEST, variable
 from softafm.solvers.history import History
 
 if TYPE_CHECKING:
-    from xarray import Dataset
+    from xarray import Dataset, Variable
 
     from softafm.result_files import Content
+
+
+def _assemble(
+    data: "dict[str, Variable]", coordinates: "dict[str, Variable]", attributes: dict
+) -> "Dataset":
+    """Return the dataset of variables and of coordinates, each along a dimension of its name."""
+    import pandas as pd
+    from xarray import Coordinates, Dataset
+    from xarray.indexes import PandasIndex
+
+    # Made here: xarray would import dask and pint to see whether these are arrays of theirs.
+    indexes = {
+        name: PandasIndex(pd.Index(known.values), name, coord_dtype=known.dtype)
+        for name, known in coordinates.items()
+    }
+    variables: dict[Any, Variable] = {}
+    for name, index in indexes.items():
+        variables |= index.create_variables({name: coordinates[name]})
+    return Dataset(data, Coordinates(variables, indexes), attributes)
 
 
 def describe(thing) -> dict:
@@ -58,8 +78,6 @@ def dataset(
     cantilever=None,
 ) -> "Dataset":
     """Assemble a result: the history, the mode's observables (dims, values) and the provenance."""
-    from xarray import Dataset
-
     curves = ("tip_height", "force", "contact_radius", "axis_deformation", "viscous_power")
     data = {name: variable(name, "time", getattr(history, name)) for name in curves}
     for name in ("jump_time", "jump_energy"):
@@ -78,7 +96,7 @@ def dataset(
     attributes = _provenance(
         mode, contact, parts, solver, tolerance, history.warnings, history.diagnostics
     )
-    return Dataset(data, coordinates, attributes)
+    return _assemble(data, coordinates, attributes)
 
 
 def curve_dataset(
@@ -89,13 +107,12 @@ def curve_dataset(
 
     ``parts`` are what took part besides the contact, by name: objects, or dictionaries.
     """
-    from xarray import Dataset
 
     def known(arrays):
         return {name: variable(name, dims, values) for name, (dims, values) in arrays.items()}
 
     attributes = _provenance(mode, contact, parts, solver, tolerance, warnings, diagnostics)
-    return Dataset(known(data), known(coordinates), attributes)
+    return _assemble(known(data), known(coordinates), attributes)
 
 
 def record_regularisation(result: "Dataset", given, contact, tabor: float | None) -> None:
@@ -153,7 +170,7 @@ def _provenance(mode, contact, parts, solver, tolerance, warnings, diagnostics) 
         "tabor_relaxed": contact.tabor_relaxed,
         "cohesive_length": contact.cohesive_length,
         **misfit_attributes(contact.sample),
-        "warnings": "\n".join(warnings),
+        "warnings": "\n".join(map(str, warnings)),
         **{f"solver_{name}": value for name, value in diagnostics.items()},
     }
 
@@ -171,7 +188,7 @@ def save(result: "Dataset", path, *, overwrite: bool = False) -> None:
         If the folder does not exist or cannot be written.
     """
     # Formed in memory: on a full disk HDF5 itself may take the process down with it.
-    content = result.to_netcdf(engine="h5netcdf")
+    content = file_content(result)
     write_whole(path, overwrite, lambda part: Path(part).write_bytes(content))
 
 

@@ -55,7 +55,7 @@ def pdms(mixing_ratio: float = 10.0) -> Elastic:
     Z. Wang, A. A. Volinsky and N. D. Gallant, J. Appl. Polym. Sci. 131, 41050 (2014).
     I. D. Johnston et al., J. Micromech. Microeng. 24, 035017 (2014).
     """
-    ratio = finite("mixing_ratio", mixing_ratio, "(no unit)")
+    ratio = finite("mixing_ratio", mixing_ratio, "")
     if not 5 <= ratio <= 33:
         raise ValueError(f"mixing_ratio = {ratio:g}: must be from 5 to 33, as was measured")
     return Elastic(E=20e6 / ratio, poisson=0.5)

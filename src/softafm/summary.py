@@ -70,17 +70,19 @@ def _percent(share: float) -> str:
 
 def _add_branches(table: Table, dataset: "Dataset") -> None:
     """Tell how far each branch reaches, and where the lever jumps in a sweep of its height."""
-    for branch in map(str, dataset["branch"].values):
-        found = dataset.sel(branch=branch).dropna("amplitude_ratio", subset=["mean_height"])
-        count = found.sizes["amplitude_ratio"]
+    branches = map(str, dataset["branch"].values)
+    columns = (dataset[name].values for name in ("mean_height", "dissipation", "phase"))
+    for branch, height, dissipation, phase in zip(branches, *columns, strict=True):
+        found = np.isfinite(height)
+        count = int(found.sum())
         words = "amplitudes"
         if count:
-            most = readable(float(found["dissipation"].max()), "J")
-            words += f"; {_degrees(found['phase'].values)}, at most {most}"
+            most = readable(float(dissipation[found].max()), "J")
+            words += f"; {_degrees(phase[found])}, at most {most}"
         table.add_row(branch, f"{count} of {dataset.sizes['amplitude_ratio']}", words)
     for direction in DIRECTIONS:
         for before, after in jumps_of(dataset, direction):
-            height = readable(float(dataset["sweep_height"][after]), "m")
+            height = readable(float(dataset["sweep_height"].values[after]), "m")
             amplitude, phase = (
                 dataset[f"{direction}_{name}"].values[[before, after]]
                 for name in ("amplitude", "phase")

@@ -6,12 +6,13 @@ from decimal import Decimal
 from functools import cache
 from math import floor, inf, isfinite, log10
 
+from softafm import plain_units
+from softafm.respelling import respell
+
 SMALLEST, LARGEST = 1e-40, 1e40
 """Magnitudes beyond these overflow or vanish when they are cubed, so they are refused."""
 
 _NUMBER = re.compile(r"[+-]?(?:(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]{1,3})?|nan|inf)")
-_FACTOR = r"[A-Za-zµμΩÅ°%]+(?:(?:\^|\*\*)-?\d|⁻?[¹²³])?"
-_UNIT = re.compile(rf"(?:1? ?/ ?)?{_FACTOR}(?: ?[*/·] ?{_FACTOR}| {_FACTOR})*")
 _LONGEST_UNIT = 40
 _PREFIXES = {-18: "a", -15: "f", -12: "p", -9: "n", -6: "µ", -3: "m", 0: "", 3: "k", 6: "M", 9: "G"}
 _PREFIXED = {"m", "s", "N", "J", "Pa", "Hz", "m/s", "J/m²", "N/m"}
@@ -51,16 +52,27 @@ STIFFNESS = Kind("a stiffness", "N/m", "28 N/m")
 
 
 @cache
+def _si_factor(unit: str, kind: Kind) -> Decimal:
+    """Return how many SI units of ``kind`` one ``unit`` is; ValueError if it is of another kind."""
+    plain, si = plain_units.parse(unit), plain_units.parse(kind.si)
+    assert si is not None
+    if plain is None:
+        return _si_factor_by_pint(unit, kind)
+    if plain.roots != si.roots:
+        raise _of_another_kind(unit, kind)
+    return plain.factor / si.factor
+
+
+@cache
 def _registry():
-    """Build pint's registry once, when the first unit is read: it takes half a second."""
+    """Build pint's registry once, when a unit is read that is not plain: it takes half a second."""
     import pint
 
     return pint.UnitRegistry()
 
 
-@cache
-def _si_factor(unit: str, kind: Kind) -> Decimal:
-    """Return how many SI units of ``kind`` one ``unit`` is; ValueError if it is of another kind."""
+def _si_factor_by_pint(unit: str, kind: Kind) -> Decimal:
+    """Return what ``_si_factor`` does, of any unit that pint knows."""
     registry = _registry()
     try:
         parsed = registry.parse_units(unit)
@@ -75,8 +87,12 @@ def _si_factor(unit: str, kind: Kind) -> Decimal:
     si_factor, si_root = registry.get_root_units(registry.parse_units(kind.si))
     # Roots, not dimensions: pint calls rad/s a frequency, and would lose a factor 2π in silence.
     if root != si_root:
-        raise ValueError(f"must be {kind.valid}; '{unit}' does not measure {kind.noun}")
+        raise _of_another_kind(unit, kind)
     return Decimal(f"{factor / si_factor:.15g}")
+
+
+def _of_another_kind(unit: str, kind: Kind) -> ValueError:
+    return ValueError(f"must be {kind.valid}; '{unit}' does not measure {kind.noun}")
 
 
 def read_quantity(written: object, kind: Kind) -> float:
@@ -86,19 +102,27 @@ def read_quantity(written: object, kind: Kind) -> float:
     ------
     ValueError
         If it is not text, has no unit or one of another kind, or is not a usable number. The
-        message says what would be valid, not what was written.
+        message says what would be valid and what may have been meant, not what was written.
     """
     if not isinstance(written, str):
         bare = isinstance(written, int | float) and not isinstance(written, bool)
         raise ValueError(f"must be {kind.valid}" + ("; the unit is missing" if bare else ""))
     text = " ".join(written.split())
+    try:
+        return _read(text, kind)
+    except ValueError as error:
+        meant = " or ".join(f"'{spelling}'" for spelling in respell(text, kind.si))
+        raise ValueError(f"{error}; did you mean {meant}?" if meant else str(error)) from None
+
+
+def _read(text: str, kind: Kind) -> float:
     number = _NUMBER.match(text)
     if number is None:
         raise ValueError(f"must be {kind.valid}")
     unit = text[number.end() :].strip()
     if not unit:
         raise ValueError(f"must be {kind.valid}; the unit is missing")
-    if len(unit) > _LONGEST_UNIT or not _UNIT.fullmatch(unit):
+    if len(unit) > _LONGEST_UNIT or not plain_units.PATTERN.fullmatch(unit):
         raise ValueError(f"must be {kind.valid}")
     factor = _si_factor("1" + unit if unit.startswith("/") else unit, kind)
     if not isfinite(float(number[0])):

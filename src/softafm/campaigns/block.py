@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from softafm.errors import AccuracyWarning, DivergedError
+from softafm.gathering import worst_of_each_kind
 
 UNKNOWN, DONE, FAILED, WARNED = range(4)
 """States of a run; the last is done, with a warning."""
@@ -67,7 +68,9 @@ class Work:
             block.values[name][place] = value
         block.state[place] = WARNED if told else DONE
         if told:
-            block.warnings[place] = "; ".join(one_line(str(warning.message)) for warning in told)
+            doubts = [each.message for each in told if isinstance(each.message, AccuracyWarning)]
+            texts = map(str, worst_of_each_kind(doubts))
+            block.warnings[place] = "; ".join(map(one_line, texts))
 
     def _value(self, given: Mapping[str, Any], name: str) -> np.ndarray:
         if name not in given:

@@ -1,6 +1,5 @@
 """A force curve for each different contact of a map."""
 
-import warnings
 from dataclasses import dataclass
 from typing import Any
 
@@ -8,6 +7,7 @@ import numpy as np
 
 from softafm.campaigns.imaging import ForceVolume
 from softafm.errors import AccuracyWarning, DivergedError
+from softafm.gathering import Placed, collect_warnings, worst_of_each_kind
 from softafm.modes.force_distance import force_distance
 from softafm.modes.spectroscopy import force_spectroscopy
 
@@ -26,17 +26,19 @@ class Curves:
     solver: Any
     tolerance: float
 
-    def __call__(self, contacts: list) -> tuple[np.ndarray, dict[int, str], list[str]]:
-        """Return ``NAMES`` of contacts (contacts, names), why some failed, and warnings."""
+    def __call__(self, contacts: list) -> tuple[np.ndarray, dict[int, str], list[Placed]]:
+        """Return ``NAMES`` of contacts (contacts, names), why some failed, and their warnings."""
         values, reasons = np.full((len(contacts), len(NAMES)), np.nan), {}
-        with warnings.catch_warnings(record=True) as caught:
-            warnings.simplefilter("always", AccuracyWarning)
-            for i, contact in enumerate(contacts):
-                try:
+        told: list[Placed] = []
+        for i, contact in enumerate(contacts):
+            found: list[AccuracyWarning] = []
+            try:
+                with collect_warnings(found):
                     values[i] = self._scalars(contact)
-                except DivergedError as error:
-                    reasons[i] = str(error)
-        return values, reasons, list(dict.fromkeys(str(each.message) for each in caught))
+            except DivergedError as error:
+                reasons[i] = str(error)
+            told += [(i, each) for each in worst_of_each_kind(found)]
+        return values, reasons, told
 
     def _scalars(self, contact) -> list[float]:
         imaging, options = self.imaging, {"solver": self.solver, "tolerance": self.tolerance}

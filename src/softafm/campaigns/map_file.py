@@ -14,12 +14,12 @@ from softafm.config import build_table, load_document, set_value
 from softafm.entries import Frequency, Length, Ratio, Tabor, Tolerance, choice_of
 from softafm.progress import Progress
 from softafm.refusals import ConfigError, as_written, nearest, one_of, shown, unknown
-from softafm.schema import Table, built, chosen
+from softafm.schema import MOTIONS, Table, built, chosen
+from softafm.takers import MAP_MODES, refuse_unless
 
 if TYPE_CHECKING:
     from xarray import Dataset
 
-MODES = ("tapping-map", "force-volume")
 _BRANCHES = ("approach", "attractive", "repulsive")
 
 
@@ -102,10 +102,12 @@ def map_from(document: Mapping[str, Any], folder: Path) -> MapExperiment:
         As ``load_map``.
     """
     mode = document.get("mode")
+    if mode in MOTIONS:
+        refuse_unless(document, "scan")
     if mode is None:
-        raise ConfigError([f"mode: missing; must be {one_of(MODES)}"])
-    if mode not in MODES:
-        raise ConfigError([f"mode = {shown(mode)}: {nearest(mode, MODES)}"])
+        raise ConfigError([f"mode: missing; must be {one_of(MAP_MODES)}"])
+    if mode not in MAP_MODES:
+        raise ConfigError([f"mode = {shown(mode)}: {nearest(mode, MAP_MODES)}"])
     known = ["mode", "tip", "cantilever", "motion", "map", "run"]
     problems = [unknown(key, known, key) for key in document if key not in known]
 

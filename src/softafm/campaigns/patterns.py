@@ -55,7 +55,7 @@ def blend(
     feature, interphase = positive("feature", feature, "m"), finite("interphase", interphase, "m")
     if interphase < 0:
         raise ValueError(f"interphase = {interphase:g} m: must be at least 0")
-    if not 0 < finite("share", share, "(no unit)") < 1:
+    if not 0 < finite("share", share, "") < 1:
         raise ValueError(f"share = {share:g}: must be above 0 and below 1")
     width, depth = (positive(f"size[{i}]", each, "m") for i, each in enumerate(size))
     ny, nx = shape

@@ -16,6 +16,7 @@ from softafm.campaigns.campaign import (
 from softafm.campaigns.designs import design_of
 from softafm.campaigns.fields import field_of, plain_field
 from softafm.refusals import ConfigError, nearest, one_of, shown
+from softafm.takers import refuse_unless
 
 
 @dataclass(frozen=True)
@@ -92,7 +93,14 @@ def campaign_of(
         One line for each problem.
     """
     if table.vary is None:
-        raise ConfigError(["sweep.vary: missing; add a table [sweep.vary] of fields and values"])
+        if isinstance(what, Mapping):
+            refuse_unless({**what, "sweep": {}}, "sweep")
+        raise ConfigError(
+            [
+                "sweep.vary: missing; add a table [sweep.vary] of fields and values ('softafm run' "
+                "takes an experiment without)"
+            ]
+        )
     if isinstance(table.observables, str):
         raise ConfigError([f"sweep.observables = {shown(table.observables)}: must be a list"])
     kind, seed = table.design or "grid", table.seed or 0

@@ -16,7 +16,8 @@ from softafm.campaigns import curve_pixels, tapped_lines
 from softafm.campaigns.imaging import AmplitudeModulation, ForceVolume
 from softafm.campaigns.sample_map import SampleMap
 from softafm.errors import AccuracyWarning
-from softafm.modes.start import refuse_start_inside, refuse_steady_flow, refuse_unable
+from softafm.gathering import Placed, gather
+from softafm.modes.start import refuse_start_inside, refuse_tapped_flow, refuse_unable
 from softafm.progress import Progress, reporting
 from softafm.results import curve_dataset, describe, misfit_attributes
 from softafm.solvers.energy import Energy
@@ -27,7 +28,6 @@ if TYPE_CHECKING:
 _CURVES_A_TASK = 8
 _REHEARSED = 4
 """Lines, one of eight at most, taken before all others, which start from what these found."""
-_MOST_TOLD = 5
 _UNITS = {
     "E": "Pa", "E0": "Pa", "E_inf": "Pa", "creep_time": "s", "hamaker": "J", "z0": "m",
     "work_of_adhesion": "J/m²", "poisson": "1",
@@ -94,7 +94,7 @@ def scan(
         contacts = [_at_pixel(sample, i, c.regularised, tabor) for i, c in enumerate(contacts)]
     take: Callable
     if isinstance(imaging, AmplitudeModulation):
-        take, refuse = _tapped, refuse_steady_flow
+        take, refuse = _tapped, refuse_tapped_flow
     else:
         refuse_unable(solver, imaging.motion)
         take, refuse = _curves, partial(refuse_start_inside, motion=imaging.motion)
@@ -104,9 +104,9 @@ def scan(
         names, values, failures, told, done = take(
             sample, contacts, imaging, solver, tolerance, workers, report
         )
-    warned = _warnings(failures, told, sample.height.size)
-    for text in warned:
-        warnings.warn(text, AccuracyWarning, stacklevel=2)
+    warned = _warnings(failures, told, sample)
+    for warning in warned:
+        warnings.warn(warning, stacklevel=2)
     result = _dataset(sample, imaging, solver, tolerance, names, values, warned, done)
     result.attrs["failures"] = json.dumps(failures)
     if regularise is not None:
@@ -154,7 +154,7 @@ def _tapped(sample, contacts, imaging, solver, tolerance, workers, report):
         for row, each in enumerate(taken)
         for column, reason in each.reasons.items()
     ]
-    told = [text for each in [column, *taken] for text in each.told]
+    told = [placed for each in [column, *taken] for placed in each.told]
     taps = column.taps + sum(each.taps for each in taken)
     return tapped_lines.NAMES, values, failures, told, {"taps": taps}
 
@@ -181,7 +181,11 @@ def _curves(sample, contacts, imaging, solver, tolerance, workers, report):
         [int(i), int(j), reasons[int(number[i, j])]]
         for i, j in np.argwhere(np.isin(number, list(reasons)))
     ]
-    told = [text for _, _, texts in taken for text in texts]
+    told = [
+        (task * _CURVES_A_TASK + i, each)
+        for task, (_, _, warned) in enumerate(taken)
+        for i, each in warned
+    ]
     return curve_pixels.NAMES, table[number], failures, told, {"curves": len(contacts)}
 
 
@@ -209,20 +213,23 @@ def _each(function: Callable, tasks: list, workers: int, report, noun: str) -> I
         ) from None
 
 
-def _warnings(failures, told: list[str], pixels: int) -> list[str]:
+def _warnings(failures, told: list[Placed], sample: SampleMap) -> list[AccuracyWarning]:
     """What to warn of: pixels without a result, and what solvers said."""
-    texts = []
+    number = sample.pixels.number
+
+    def where(contact: int) -> str:
+        i, j = np.argwhere(number == contact)[0]
+        return f"pixel ({i}, {j})"
+
+    failed = []
     if failures:
         i, j, reason = failures[0]
-        texts.append(
-            f"{len(failures)} of {pixels} pixels have no result and are NaN; the first, "
+        text = (
+            f"{len(failures)} of {number.size} pixels have no result and are NaN; the first, "
             f"({i}, {j}): {reason}"
         )
-    different = list(dict.fromkeys(told))
-    texts += different[:_MOST_TOLD]
-    if len(different) > _MOST_TOLD:
-        texts.append(f"and {len(different) - _MOST_TOLD} more like these, at other pixels")
-    return texts
+        failed = [AccuracyWarning(text, len(failures))]
+    return [*failed, *gather(told, len(sample.pixels.contacts), "different pixels", where)]
 
 
 def _dataset(sample, imaging, solver, tolerance, names, values, warned, done) -> "Dataset":

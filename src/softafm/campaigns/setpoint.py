@@ -9,13 +9,13 @@ itself is stable at fixed height and its amplitude falls with the height, that i
 force needed over that of the drive falls with d.
 """
 
-import warnings
 from dataclasses import dataclass, field
 from typing import Any, NamedTuple
 
 import numpy as np
 
 from softafm.errors import AccuracyWarning, DivergedError
+from softafm.gathering import collect_warnings
 from softafm.modes.amplitude_curve import AmplitudeCurve
 from softafm.modes.tap_map import OBSERVABLES, TapMap
 from softafm.modes.tapping import tap_observables
@@ -81,16 +81,14 @@ class Setpoint:
     solver: Any
     tolerance: float
     taps: int = 0
-    told: list[str] = field(default_factory=list)
+    told: list[AccuracyWarning] = field(default_factory=list)
 
     def tap(self, contact, approach: float, amplitude: float | None = None) -> np.ndarray:
         """``OBSERVABLES`` of a steady tap of a closest approach, m."""
         amplitude = self.amplitude if amplitude is None else amplitude
-        motion = Sine(amplitude + approach, amplitude, self.frequency, "steady")
-        with warnings.catch_warnings(record=True) as caught:
-            warnings.simplefilter("always", AccuracyWarning)
+        with collect_warnings(self.told):
+            motion = Sine(amplitude + approach, amplitude, self.frequency, "steady")
             history = self.solver.solve(contact, motion, tolerance=self.tolerance)
-        self.told += [str(each.message) for each in caught]
         self.taps += 1
         found = tap_observables(contact, motion, history)
         return np.array([found[name][1] for name in OBSERVABLES])

@@ -17,6 +17,7 @@ from softafm._validate import tolerance_of
 from softafm.campaigns.imaging import AmplitudeModulation
 from softafm.campaigns.setpoint import ATTRACTIVE, REPULSIVE, Lost, Point, Setpoint
 from softafm.errors import AccuracyWarning, DivergedError
+from softafm.gathering import Placed, worst_of_each_kind
 from softafm.modes.approach import approach_curve, drive_of
 from softafm.modes.tap_map import OBSERVABLES
 
@@ -88,11 +89,14 @@ class Known:
 
 @dataclass(frozen=True)
 class Taken:
-    """What a stretch of pixels gave: ``values`` (pixels, NAMES), why some failed, warnings."""
+    """What a stretch of pixels gave: ``values`` (pixels, NAMES), why some failed, warnings.
+
+    Warnings come with the number of their contact.
+    """
 
     values: np.ndarray
     reasons: dict[int, str]
-    told: list[str]
+    told: list[Placed]
     taps: int
 
 
@@ -106,13 +110,15 @@ def setpoint_of(imaging: AmplitudeModulation, solver, tolerance: float) -> Setpo
 def walk(setpoint: Setpoint, spots: list[Spot], branch: int, known: Known) -> Taken:
     """Take pixels one after the other; ``known`` is added to."""
     started, reasons = setpoint.taps, {}
-    setpoint.told.clear()
+    told: list[Placed] = []
     values = np.full((len(spots), len(NAMES)), np.nan)
     last: Point | None = None
     for i, spot in enumerate(spots):
         key = spot.number, branch
         if key not in known.solved:
+            setpoint.told.clear()
             known.solved[key] = _solved(setpoint, spot, branch, known, last)
+            told += [(spot.number, each) for each in worst_of_each_kind(setpoint.told)]
         found = known.solved[key]
         if isinstance(found, str):
             reasons[i] = found
@@ -120,7 +126,6 @@ def walk(setpoint: Setpoint, spots: list[Spot], branch: int, known: Known) -> Ta
         last, branch = found, found.branch
         height = setpoint.amplitude + found.approach
         values[i] = [height, setpoint.phase(found.values), branch, *found.values]
-    told = list(dict.fromkeys(setpoint.told))
     return Taken(values, reasons, told, setpoint.taps - started)
 
 

@@ -4,6 +4,7 @@ Rajabifar et al. 2021, equations (29) to (32), and their general form off resona
 """
 
 import warnings
+from collections.abc import Iterator
 from functools import partial
 from typing import TYPE_CHECKING
 
@@ -13,9 +14,10 @@ from softafm._validate import finite, positive, tolerance_of
 from softafm.cantilever import Cantilever
 from softafm.contact import Contact
 from softafm.errors import AccuracyWarning
+from softafm.gathering import Placed, collect_warnings, gather
 from softafm.modes.amplitude_curve import BRANCHES, AmplitudeCurve, Solutions
 from softafm.modes.check import Scales, checked, finer_run
-from softafm.modes.start import refuse_other_than_cantilever, refuse_steady_flow, regularised
+from softafm.modes.start import refuse_other_than_cantilever, refuse_tapped_flow, regularised
 from softafm.modes.tap_map import OBSERVABLES, TapMap
 from softafm.modes.tapping import tap_observables
 from softafm.motions import Sine
@@ -23,6 +25,7 @@ from softafm.oscillator import Drive
 from softafm.progress import Progress, reporting
 from softafm.results import curve_dataset, record_regularisation
 from softafm.solvers.energy import Energy
+from softafm.units import readable
 
 if TYPE_CHECKING:
     from xarray import Dataset
@@ -88,14 +91,19 @@ def approach_curve(
     tolerance = tolerance_of(tolerance)
     solver = Energy() if solver is None else solver
     refuse_other_than_cantilever(cantilever)
-    refuse_steady_flow(contact)
+    refuse_tapped_flow(contact)
     ratios = _ratios(amplitude_ratio)
     free_amplitude = positive("free_amplitude", free_amplitude, "m")
     drive, frequency = drive_of(cantilever, free_amplitude, drive_frequency)
 
+    doubts: list[Placed] = []
+
     def tap(amplitude, approach):
-        motion = Sine(amplitude + approach, amplitude, frequency, "steady")
-        history = solver.solve(contact, motion, tolerance=tolerance)
+        warned: list[AccuracyWarning] = []
+        with collect_warnings(warned):
+            motion = Sine(amplitude + approach, amplitude, frequency, "steady")
+            history = solver.solve(contact, motion, tolerance=tolerance)
+        doubts.extend(((amplitude, approach), warning) for warning in warned)
         found = tap_observables(contact, motion, history)
         return np.array([found[name][1] for name in OBSERVABLES])
 
@@ -109,9 +117,11 @@ def approach_curve(
                 report(1 - np.exp(-done / 80), f"{done} taps")
     curve = AmplitudeCurve(taps, drive)
     found = curve.at_amplitudes(ratios * free_amplitude)
-    warned = tuple(_warnings(taps, tap, drive, tolerance, found))
-    for text in warned:
-        warnings.warn(text, AccuracyWarning, stacklevel=2)
+    doubtful = list(_warnings(taps, tap, drive, tolerance, found))
+    checks = _checked(found).size
+    warned = [*gather(doubts, taps.taps + checks, "taps", _where), *doubtful]
+    for warning in warned:
+        warnings.warn(warning, stacklevel=2)
     data, coordinates = _tables(curve, ratios, found)
     motion = {
         "kind": "approach-curve",
@@ -161,25 +171,40 @@ def deepest_tap(contact: Contact, drive: Drive, frequency: float, amplitudes) ->
     return Sine(amplitude - float(depth[deepest]), amplitude, frequency, "steady")
 
 
-def _warnings(taps, tap, drive, tolerance, found: Solutions):
+def _where(tap: tuple[float, float]) -> str:
+    amplitude, approach = tap
+    height = readable(amplitude + approach, "m")
+    return f"amplitude {readable(amplitude, 'm')} and mean height {height}"
+
+
+def _checked(found: Solutions) -> np.ndarray:
+    """Return the indices of the solutions that are run again, to see whether they hold."""
+    count = found.amplitude.size
+    return np.unique(np.linspace(0, count - 1, min(count, _CHECKS)).astype(int))
+
+
+def _warnings(taps, tap, drive, tolerance, found: Solutions) -> Iterator[AccuracyWarning]:
     """Tell of missing and surplus solutions, and run a few again to see whether they hold."""
     if found.amplitude.size == 0:
-        yield "no height goes with any of the amplitudes: there is nothing to plot"
+        yield AccuracyWarning("no height goes with any of the amplitudes: there is nothing to plot")
         return
-    some = np.unique(np.linspace(0, found.amplitude.size - 1, _CHECKS).astype(int))
-    for amplitude, approach in zip(found.amplitude[some], found.approach[some], strict=True):
+    wrong = []
+    for i in _checked(found):
+        amplitude, approach = found.amplitude[i], found.approach[i]
         excess = float(drive.excess(amplitude, *tap(amplitude, approach)[:2]))
         slope = taps.excess_slope(amplitude, approach)
         off = abs(excess / slope)
         if abs(excess) > 2 * tolerance and off > 0.1 * taps.unit:
-            yield (
+            text = (
                 f"the solution of amplitude {amplitude:.3g} m is off by about {off:.2g} m in "
                 "height: taps between those that were run are not smooth"
             )
+            wrong.append(((amplitude, approach), AccuracyWarning(text, off)))
+    yield from gather(wrong, _checked(found).size, "solutions that were checked", _where)
     labels = list(zip(found.row, found.branch, strict=True))
     for branch in ("attractive", "repulsive"):
         if any(labels.count((row, branch)) > 1 for row in set(found.row)):
-            yield (
+            yield AccuracyWarning(
                 f"one amplitude has several stable {branch} solutions: mean_height holds the "
                 "farthest, approach_... and retract_... take all into account"
             )

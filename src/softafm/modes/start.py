@@ -1,6 +1,7 @@
 """What all modes begin with: checks, and a run of the solver."""
 
 import warnings
+from dataclasses import replace
 
 from softafm._validate import tabor_of, tolerance_of
 from softafm.cantilever import Cantilever
@@ -19,16 +20,17 @@ def carry(contact, motion, solver, tolerance, profiles, progress, **options):
     solver = Energy() if solver is None else solver
     refuse_start_inside(contact, motion)
     if getattr(motion, "steady", False):
-        refuse_steady_flow(contact)
+        refuse_flow(contact, "cycles = 'steady'", "give a number of cycles")
     refuse_unable(solver, motion)
-    warn_outside_window(contact, motion)
-    for doubt in getattr(motion, "doubts", ()):
-        warnings.warn(doubt, AccuracyWarning, stacklevel=3)  # the caller of the mode
+    doubted = [AccuracyWarning(text) for text in getattr(motion, "doubts", ())]
+    doubts = (*doubt_window(contact, motion), *doubted)
+    for warning in doubts:
+        warnings.warn(warning, stacklevel=3)  # the caller of the mode
     with reporting(progress) as report:
         history = solver.solve(
             contact, motion, tolerance=tolerance, profiles=profiles, progress=report, **options
         )
-    return solver, tolerance, history
+    return solver, tolerance, replace(history, warnings=(*doubts, *history.warnings))
 
 
 def regularised(contact: Contact, tabor: float | None) -> Contact:
@@ -36,21 +38,21 @@ def regularised(contact: Contact, tabor: float | None) -> Contact:
     return contact if tabor is None else contact.regularised(tabor_of("regularise", tabor))
 
 
-def warn_outside_window(contact, motion) -> None:
-    """Warn, on behalf of a mode that called ``carry``, of a motion longer than a sample's window.
+def doubt_window(contact, motion) -> tuple[AccuracyWarning, ...]:
+    """Return what is to be warned of if a motion is longer than a sample's window, or nothing.
 
     Such a sample has a ``window``, the times (s) over which a chain represents it.
     """
     shortest, longest = getattr(contact.sample, "window", (0.0, float("inf")))
     duration = float(motion.breaks[-1] - motion.breaks[0])
-    if duration > longest:
-        warnings.warn(
-            f"the motion lasts {duration:.3g} s, but the sample '{contact.sample.kind}' is "
-            f"represented over window = ({shortest:g}, {longest:g}) s only: what it remembers for "
-            f"longer is wrong; enlarge the window to {duration:.3g} s",
-            AccuracyWarning,
-            stacklevel=4,  # the caller of the mode
-        )
+    if duration <= longest:
+        return ()
+    text = (
+        f"the motion lasts {duration:.3g} s, but the sample '{contact.sample.kind}' is "
+        f"represented over window = ({shortest:g}, {longest:g}) s only: what it remembers for "
+        f"longer is wrong; enlarge the window to {duration:.3g} s"
+    )
+    return (AccuracyWarning(text, duration / longest),)
 
 
 def refuse_other_than_cantilever(cantilever) -> None:
@@ -77,13 +79,22 @@ def refuse_start_inside(contact, motion) -> None:
         )
 
 
-def refuse_steady_flow(contact) -> None:
-    """Raise ValueError if the sample flows, so that no cycle is like the one before."""
+def refuse_flow(contact, what: str, remedy: str) -> None:
+    """Raise ValueError if the sample flows, so that no cycle is like the one before.
+
+    ``what`` needs a steady cycle; ``remedy`` is what to do instead.
+    """
     if contact.sample.reduced_compliance.fluidity > 0:
         raise ValueError(
-            f"cycles = 'steady': the sample '{contact.sample.kind}' flows, so that the tip sinks "
-            "deeper with every cycle; give a number of cycles"
+            f"{what}: the sample '{contact.sample.kind}' flows, so that the tip sinks deeper with "
+            f"every cycle; {remedy}"
         )
+
+
+def refuse_tapped_flow(contact) -> None:
+    """Raise ValueError if a lever is to keep its amplitude on a sample that flows."""
+    remedy = "take tapping_cycle with a number of cycles, or force_distance"
+    refuse_flow(contact, "no height goes with an amplitude", remedy)
 
 
 def refuse_unable(solver, motion) -> None:

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from softafm._validate import numbers, positive
+from softafm._validate import numbers
 
 
 def positives(name: str, values, unit: str, *, zeros: bool = False) -> tuple[float, ...]:
@@ -12,8 +12,8 @@ def positives(name: str, values, unit: str, *, zeros: bool = False) -> tuple[flo
         entry = f"{name}[{index}]"
         if zeros and number < 0:
             raise ValueError(f"{entry} = {number:g} {unit}: must not be negative")
-        if not zeros:
-            positive(entry, number, unit)
+        if not zeros and number <= 0:
+            raise ValueError(f"{entry} = {number:g} {unit}".rstrip() + ": must be greater than 0")
     return checked
 
 

@@ -166,7 +166,7 @@ class GeneralizedMaxwell(Solid):
             E_k/E0, no unit, of which the sum is at most 1; it flows if the sum is 1.
         """
         E0 = positive("E0", E0, "Pa")
-        ratios = positives("ratios", ratios, "(no unit)", zeros=True)
+        ratios = positives("ratios", ratios, "", zeros=True)
         rest = 1 - fsum(ratios)
         if rest < -_ROUND_OFF:
             raise ValueError(

@@ -13,7 +13,7 @@ from softafm.rheology.solid import Solid
 
 def exponent_of(value: float) -> float:
     """Return ``value`` if it lies between those of a spring, 0, and of a dashpot, 1."""
-    number = finite("exponent", value, "(no unit)")
+    number = finite("exponent", value, "")
     if not 0 < number < 1:
         raise ValueError(f"exponent = {number:g}: must be above 0 (elastic) and below 1 (viscous)")
     return number

@@ -43,7 +43,7 @@ class Series(NamedTuple):
 
 def error_of(value: float) -> float:
     """Return ``value`` if it is an error that a series can keep."""
-    number = finite("error", value, "(no unit)")
+    number = finite("error", value, "")
     if not 1e-5 <= number <= 0.5:
         raise ValueError(f"error = {number:g}: must be between 1e-5 and 0.5")
     return number

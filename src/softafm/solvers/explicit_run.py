@@ -96,8 +96,8 @@ def march(
         if progress is not None:
             progress(fraction, f"{fraction:.0%} of the motion")
     history = run.history(perf_counter() - started)
-    for text in history.warnings:
-        warnings.warn(text, AccuracyWarning, stacklevel=5)  # the caller of the mode
+    for warning in history.warnings:
+        warnings.warn(warning, stacklevel=5)  # the caller of the mode
     return history
 
 
@@ -242,21 +242,24 @@ class _Run:
     def _warnings(self, records):
         beyond = int(self.counters[k.BEYOND_FOLD])
         if beyond:
-            yield (
+            yield AccuracyWarning(
                 f"the surface was beyond an elastic instability in {beyond} of "
                 f"{self.counters[k.RATES]} rates: steps of fixed length cross one by luck, and "
-                "forces and energies depend on their number. solvers.Energy() follows such jumps"
+                "forces and energies depend on their number. solvers.Energy() follows such jumps",
+                beyond / self.counters[k.RATES],
             )
         if self.cycle == _MOST_CYCLES:
-            yield (
+            yield AccuracyWarning(
                 f"no steady cycle after {self.cycle}: the surface still drifts by "
-                f"{self.unsteady:.2g} gaps of largest tension. solvers.Energy() looks ahead"
+                f"{self.unsteady:.2g} gaps of largest tension. solvers.Energy() looks ahead",
+                self.unsteady,
             )
         edge, domain = float(records[:, k.R_EDGE].max(initial=0.0)), self.domain
         if edge > 0.9 * domain:
-            yield (
+            yield AccuracyWarning(
                 f"the contact reaches to {edge:.3g} m, the rim of the domain of {domain:.3g} m: "
-                "choose a larger domain"
+                "choose a larger domain",
+                edge / domain,
             )
 
 

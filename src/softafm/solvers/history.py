@@ -5,6 +5,8 @@ from typing import Any
 
 import numpy as np
 
+from softafm.errors import AccuracyWarning
+
 _POINTS, _WEIGHTS = np.polynomial.legendre.leggauss(4)
 _MOST_UNEVEN = 4.0
 
@@ -44,7 +46,8 @@ class History:
     """The motion as it was carried out: a ramp may have been turned by a force."""
     profiles: Profiles | None = None
     diagnostics: dict[str, float] = field(default_factory=dict)
-    warnings: tuple[str, ...] = ()
+    warnings: tuple[AccuracyWarning, ...] = ()
+    """What the solver doubts; it has warned of it, too."""
     _quadratures: dict = field(default_factory=dict, init=False, repr=False, compare=False)
 
     def integrate(self, values, weight, start=-np.inf, stop=np.inf) -> float:

@@ -103,7 +103,7 @@ def _van_der_waals(h, H, z0, n):
 
 
 def _exponent(value: float) -> float:
-    number = finite("exponent", value, "(no unit)")
+    number = finite("exponent", value, "")
     if not 3 < number <= 100:
         raise ValueError(
             f"exponent = {number:g}: must be above 3, that of the attraction, and at most 100"

@@ -45,7 +45,7 @@ class PowerLawTip(Tip):
     radius: float
 
     def __post_init__(self):
-        exponent = finite("exponent", self.exponent, "(no unit)")
+        exponent = finite("exponent", self.exponent, "")
         if not 2 <= exponent <= _LARGEST:
             raise ValueError(
                 f"exponent = {exponent:g}: must be from 2 to {_LARGEST:g} (below 2 the apex would "

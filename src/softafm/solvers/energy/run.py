@@ -6,7 +6,7 @@ from math import sqrt
 
 import numpy as np
 
-from softafm.errors import DivergedError
+from softafm.errors import AccuracyWarning, DivergedError
 from softafm.kernels import still
 from softafm.solvers.energy.layout import (
     DEFORMATION,
@@ -319,19 +319,20 @@ class Run:
             warnings=self._warnings(),
         )
 
-    def _warnings(self) -> tuple[str, ...]:
+    def _warnings(self) -> tuple[AccuracyWarning, ...]:
         return (*self._unsteady(), *self._too_coarse(), *self._too_slack(), *self._too_sharp())
 
-    def _unsteady(self) -> tuple[str, ...]:
+    def _unsteady(self) -> tuple[AccuracyWarning, ...]:
         if self.unsteady <= self.steadiness:
             return ()
-        return (
+        text = (
             f"no steady cycle after {self.cycle}: the surface starts the last ones off by up to "
             f"{self.unsteady:.2g} gaps of largest tension from where they would end. Choose a "
-            "number of cycles instead",
+            "number of cycles instead"
         )
+        return (AccuracyWarning(text, self.unsteady),)
 
-    def _too_coarse(self) -> tuple[str, ...]:
+    def _too_coarse(self) -> tuple[AccuracyWarning, ...]:
         coarseness, edge = self.coarsest
         if coarseness <= 1.3 * self.target:
             return ()
@@ -345,39 +346,42 @@ class Run:
                 ", or enlarge the range of the attraction at fixed work of adhesion, regularise="
                 f"{self.contact.tabor_softened / sqrt(wide):.2g}"
             )
-        return (
+        text = (
             f"the cohesive zone at the contact edge, {spacing / coarseness:.2g} m wide, is "
             f"resolved by nodes {spacing:.2g} m apart (finest_spacing = "
             f"{self.solver.finest_spacing:g} contact radii) where "
             f"{self.target * spacing / coarseness:.2g} m is needed: forces and above all the loop "
-            f"energy may be wrong. Lower solvers.Energy(finest_spacing=...){remedy}",
+            f"energy may be wrong. Lower solvers.Energy(finest_spacing=...){remedy}"
         )
+        return (AccuracyWarning(text, coarseness / self.target),)
 
-    def _too_slack(self) -> tuple[str, ...]:
+    def _too_slack(self) -> tuple[AccuracyWarning, ...]:
         tabor = self.contact.tabor_instantaneous
         if not self.contact.adhesive or tabor <= _SLACKEST or len(self.falls) < 2:
             return ()
-        return (
+        text = (
             "the contact is soft for its adhesion even when loaded fast (Tabor number "
             f"{tabor:.3g}): beyond {_SLACKEST:g} its edge catches on the nodes before it lets go. "
             "Forces hold, but the loop energy may be wrong, by 2 % at 20 and entirely at 60; try "
-            "regularise=8",
+            "regularise=8"
         )
+        return (AccuracyWarning(text, tabor),)
 
     def _softer(self) -> str:
         """Advise a longer range where the contact is too soft for its own."""
         tabor = self.contact.tabor_softened
         return f"; its Tabor number is {tabor:.3g}: try regularise=8" if tabor > 30 else ""
 
-    def _too_sharp(self) -> tuple[str, ...]:
+    def _too_sharp(self) -> tuple[AccuracyWarning, ...]:
         law = self.contact.surface
         if not self.contact.adhesive or law.sharpness <= _SHARPEST:
             return ()
-        return (
+        text = (
             f"the tension of the surface law '{law.kind}' ends {law.sharpness:.2g} times as sharply"
             f" as that of a Lennard-Jones law of its range; beyond {_SHARPEST:g} times the contact "
-            "edge may catch on the nodes, and forces be off by several per cent. Smooth the law",
+            "edge may catch on the nodes, and forces be off by several per cent. Smooth the law"
         )
+        return (AccuracyWarning(text, law.sharpness),)
 
 
 def _stagnates(misses: list[float]) -> bool:

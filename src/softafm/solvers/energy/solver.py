@@ -7,7 +7,6 @@ from typing import ClassVar
 
 from softafm._validate import finite, positive
 from softafm.announce import announced_compilation
-from softafm.errors import AccuracyWarning
 from softafm.motions import lowest_height
 from softafm.solvers.history import History
 
@@ -81,8 +80,8 @@ class Energy:
             if progress is not None:
                 progress(fraction, f"{fraction:.0%} of the motion")
         history = run.history(perf_counter() - started)
-        for text in history.warnings:
-            warnings.warn(text, AccuracyWarning, stacklevel=4)  # the caller of the mode
+        for warning in history.warnings:
+            warnings.warn(warning, stacklevel=4)  # the caller of the mode
         return history
 
     def expected_seconds(self, contact, motion) -> float:
