@@ -1,6 +1,8 @@
 """Uploaded files are read apart: whoever waits for one waits alone."""
 
+import asyncio
 import base64
+import queue
 import threading
 import time
 from pathlib import Path
@@ -77,11 +79,20 @@ def test_other_visitors_are_served_while_a_file_is_read(stuck):
         return pages[-1]
 
     with Runner(processes=0) as runner:
-        server = pn.serve(
-            visited, port=0, address="127.0.0.1", show=False, start=False, verbose=False
-        )
-        loop = threading.Thread(target=lambda: (server.start(), server.io_loop.start()))
+        servers = queue.SimpleQueue()
+
+        def serve():
+            asyncio.set_event_loop(asyncio.new_event_loop())  # that of this thread may be in use
+            made = pn.serve(
+                visited, port=0, address="127.0.0.1", show=False, start=False, verbose=False
+            )
+            made.start()
+            servers.put(made)
+            made.io_loop.start()
+
+        loop = threading.Thread(target=serve)
         loop.start()
+        server = servers.get(timeout=60)
         address = f"http://127.0.0.1:{server.port}/"
         try:
             assert urlopen(address, timeout=60).status == 200
@@ -248,12 +259,15 @@ def test_a_reading_tells_what_it_found_or_why_not():
 def test_moduli_of_a_long_record_are_tried_as_the_form_uses_them(tmp_path):
     """With the fit that every answer in the form repeats."""
     frequency = np.geomspace(1e-3, 1e6, 2000)
-    storage, loss = 1e6 * (1 + frequency**0.1), 1e5 * frequency**0.05
+    # A spring beside a springpot: (iω)^a = ω^a (cos πa/2 + i sin πa/2).
+    springpot = 1e6 * (2j * np.pi * frequency) ** 0.1
+    storage, loss = 1e6 + springpot.real, springpot.imag
     rows = np.column_stack([frequency, storage, loss])
     path = tmp_path / "dma.csv"
     header = "frequency (Hz),storage (Pa),loss (Pa)"
     np.savetxt(path, rows, delimiter=",", header=header, comments="")
-    assert try_out("softafm.rheology.dma_table:read_moduli", str(path)) == (None, [])
+    reader = "softafm.rheology.dma_table:read_moduli"
+    assert read_apart("softafm.app.readings:try_out", reader, str(path)) == (None, [])
 
 
 def test_an_uploaded_result_is_drawn_and_comes_back_whole(page):

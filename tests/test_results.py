@@ -11,6 +11,7 @@ import pytest
 import xarray as xr
 
 import softafm as sa
+from softafm.results import load_apart
 
 CONTACT = sa.Contact(
     tip=sa.Paraboloid(10e-9),
@@ -271,11 +272,14 @@ def test_what_a_user_adds_is_saved(result, tmp_path):
     added = result.assign(
         count=("jump", [3] * result.sizes["jump"]),
         seen=("time", result["force"].values > 0),
-        offset=result["force"].astype("f4").assign_attrs(_FillValue=np.float32(-1)),
-    ).assign_coords(phase=("time", np.linspace(0, 1, result.sizes["time"])), place=3.0)
+        offset=result["force"].astype("f4"),
+    ).assign_coords(stage=("time", np.linspace(0, 1, result.sizes["time"])), place=3.0)
     sa.save(added, tmp_path / "added.nc")
     xr.testing.assert_equal(sa.load(tmp_path / "added.nc"), added)
-    assert set(sa.load(tmp_path / "added.nc").coords) == {"time", "phase", "place"}
+    apart = load_apart(tmp_path / "added.nc")
+    xr.testing.assert_equal(apart, added)
+    assert {apart[name].dtype.kind for name in ("count", "seen", "offset")} == set("ibf")
+    assert set(sa.load(tmp_path / "added.nc").coords) == {"time", "stage", "place"}
 
 
 def test_a_result_with_warnings_and_odd_names_survives(result, tmp_path):

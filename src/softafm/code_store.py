@@ -13,6 +13,7 @@ import stat
 import sys
 import tempfile
 from collections.abc import Iterator
+from contextlib import ExitStack, contextmanager, suppress
 from functools import cache
 from hashlib import sha256
 from pathlib import Path
@@ -131,6 +132,27 @@ def _remove_unused(shelf: Path) -> None:
     for place in shelf.iterdir():
         if _BUILD.fullmatch(place.name) and time() - place.lstat().st_mtime > _UNUSED:
             shutil.rmtree(place, ignore_errors=True)
+
+
+@contextmanager
+def in_turn() -> Iterator[None]:
+    """Let one process of the user at a time compile for this build; not on Windows.
+
+    Numba's code for the same sources differs in the order of operations from process to process. So
+    whoever waited looks again, and all take what the first one kept.
+    """
+    place = folder()
+    try:
+        import fcntl
+    except ImportError:
+        place = None
+    with ExitStack() as held:
+        if place is not None:
+            with suppress(OSError):  # where there is no place for locks, everyone goes ahead
+                lock = os.open(place / "lock", os.O_RDWR | os.O_CREAT | os.O_NOFOLLOW, 0o600)
+                held.callback(os.close, lock)
+                fcntl.flock(lock, fcntl.LOCK_EX)
+        yield
 
 
 def read(name: str) -> bytes | None:

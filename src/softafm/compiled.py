@@ -66,7 +66,8 @@ def compile_for(signature: Any, **options: Any) -> Callable[[Callable], Any]:
             raise RuntimeError(f"{function.__code__.co_filename} is not in code_store.ROOMS")
         dispatcher = njit(**(_OPTIONS | _NO_MEMORY | options))(function)
         dispatcher._cache = _Store(function)
-        dispatcher.compile(signature)
+        with code_store.in_turn():
+            dispatcher.compile(signature)
         dispatcher.disable_compile()
         return dispatcher
 

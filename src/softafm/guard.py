@@ -134,7 +134,7 @@ def _answer(stream: IO[bytes], largest: int) -> tuple[Any, list[np.ndarray]]:
         raise Unreadable(str(told["problem"])[:_LONGEST_PROBLEM])
     content, described = told["content"], told["arrays"]
     kinds = [(np.dtype(kind), tuple(map(int, shape))) for kind, shape in described]
-    if any(kind.kind not in "fiuU" for kind, _ in kinds):
+    if any(kind.kind not in "fiubU" for kind, _ in kinds):
         raise TypeError("no array of numbers or texts")
     if sum(kind.itemsize * prod(shape) for kind, shape in kinds) > largest:
         raise Unreadable(f"has more than {largest / 1e6:g} MB unpacked")

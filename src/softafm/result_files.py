@@ -24,6 +24,8 @@ _HIDDEN = (
 )  # fmt: skip
 """Attributes with which NetCDF-4 keeps names of dimensions."""
 _PACKING = ("scale_factor", "add_offset", "missing_value", "_Unsigned", "calendar", "dtype")
+_FLAGS = "bool"
+"""What the attribute ``dtype`` says of integers that xarray wrote for flags a user added."""
 _NO_VARIABLE = "This is a netCDF dimension but not a netCDF variable"
 
 
@@ -72,13 +74,18 @@ def _read(file: h5py.File, largest: int) -> tuple[Content, list[np.ndarray]]:
         raise NotReadable(f"has {size / 1e6:.0f} MB unpacked: at most {largest / 1e6:g} MB")
     attributes = _attributes("the file", file)
     coordinates = str(attributes.pop("coordinates", "")).split()
-    variables = []
+    variables, flags = [], set()
     for name, dataset in held.items():
         described = _attributes(f"variable '{name}'", dataset)
+        if described.pop("dtype", None) == _FLAGS:
+            flags.add(name)
         coordinates += str(described.pop("coordinates", "")).split()
         variables.append((name, _dimensions(file, name, dataset, sizes), described))
     extra = [name for name in dict.fromkeys(coordinates) if name in held]
     arrays = [_values(name, dataset, largest) for name, dataset in held.items()]
+    arrays = [
+        values != 0 if name in flags else values for name, values in zip(held, arrays, strict=True)
+    ]
     return Content(attributes, variables, extra), arrays
 
 
@@ -170,9 +177,9 @@ def _shown_attributes(where: str, thing: h5py.File | h5py.Dataset) -> Iterator[t
         if name in _HIDDEN:
             continue
         attribute = f"attribute '{name[:60]}' of {where}"
-        if name in _PACKING:
-            raise NotReadable(f"{attribute}: softafm does not write such values")
         value = _attribute(attribute, thing, name)
+        if name in _PACKING and not (name == "dtype" and value == _FLAGS):
+            raise NotReadable(f"{attribute}: softafm does not write such values")
         if name == "_FillValue" and value == value:
             raise NotReadable(f"{attribute} = {value}: must be NaN")
         yield name, value
