@@ -193,7 +193,7 @@ def plot(entries: list[dict], path: Path) -> None:
     """Draw the errors against the tolerance, one dot a run."""
     from matplotlib.figure import Figure
 
-    from softafm.plotting import COLOURS
+    from softafm.draw.results import COLOURS
 
     figure = Figure(figsize=(6, 4.5), layout="constrained")
     ax = figure.subplots()

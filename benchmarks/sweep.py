@@ -21,7 +21,7 @@ import common
 import numpy as np
 
 import softafm as sa
-from softafm.config import document_from, example_text
+from softafm.experiment.config import document_from, example_text
 
 HEIGHTS = 42e-9, 46e-9
 

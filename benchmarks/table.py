@@ -23,8 +23,8 @@ import modes
 import numpy as np
 
 import softafm as sa
+from softafm.compiled.dense import factorise
 from softafm.halfspace.mesh import unit_mesh
-from softafm.solvers.dense import factorise
 from softafm.solvers.energy import run as energy_run
 
 TAP = "ldpe-tap-setpoint-0.8"

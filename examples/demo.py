@@ -12,9 +12,9 @@ import xarray as xr
 from rich.console import Console
 from rich.table import Table
 
-from softafm.config import load_experiment
-from softafm.plotting import plot
-from softafm.units import readable
+from softafm.draw.results import plot
+from softafm.experiment.config import load_experiment
+from softafm.units.quantities import readable
 
 SPEEDS = ("5 um/s", "2 um/s", "1 um/s")
 OBSERVABLES = ("force_max", "force_min", "loop_energy", "virial", "dissipation")

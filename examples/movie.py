@@ -9,7 +9,7 @@ from importlib.resources import as_file, files
 from pathlib import Path
 
 import softafm as sa
-from softafm.config import load_experiment
+from softafm.experiment.config import load_experiment
 
 
 def main() -> None:

@@ -23,8 +23,8 @@ from rich.table import Table
 
 import softafm as sa
 from softafm import solvers
-from softafm.plotting import COLOURS
-from softafm.units import readable
+from softafm.draw.results import COLOURS
+from softafm.units.quantities import readable
 
 ROOT = Path(__file__).parents[1]
 OUTPUT = ROOT / "paper-output"

@@ -15,9 +15,9 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
 import softafm as sa
-from softafm.scene_drawing import SAMPLE_COLOURS, scales
-from softafm.scenes import scenes_at, view_of, window
-from softafm.storyboard import instants_of
+from softafm.draw.scene_parts import SAMPLE_COLOURS, scales
+from softafm.draw.scenes import scenes_at, view_of, window
+from softafm.draw.storyboard import instants_of
 
 AMPLITUDE, MEAN_HEIGHT, FREQUENCY = 49.6e-9, 46e-9, 278e3
 FRAMES = 12

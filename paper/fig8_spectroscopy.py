@@ -20,7 +20,7 @@ import common
 import numpy as np
 
 import softafm as sa
-from softafm.plotting import COLOURS
+from softafm.draw.results import COLOURS
 
 POLYETHYLENE = replace(common.LDPE, sample=replace(common.LDPE.sample, creep_time=1e-5))
 RAMP = sa.Triangle(start=20e-9, turn=-5e-9, speed=200e-9)

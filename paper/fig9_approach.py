@@ -19,8 +19,8 @@ import numpy as np
 from matplotlib.lines import Line2D
 
 import softafm as sa
-from softafm.plotting import COLOURS
-from softafm.sweeps import jumps_of
+from softafm.draw.approach_data import jumps_of
+from softafm.draw.results import COLOURS
 
 POLYSTYRENE = sa.Contact(
     sa.Paraboloid(radius=50e-9),

@@ -13,7 +13,7 @@ import common
 import numpy as np
 
 from softafm import solvers
-from softafm.plotting import COLOURS
+from softafm.draw.results import COLOURS
 
 RANGES = {
     "<6000": np.geomspace(2000, 6000, 26).round().astype(int).tolist(),

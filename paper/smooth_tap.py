@@ -13,7 +13,7 @@ import common
 import numpy as np
 
 from softafm import solvers
-from softafm.plotting import COLOURS
+from softafm.draw.results import COLOURS
 
 CASE = common.tap_case("smooth-tap")
 OBSERVABLES = ("virial", "dissipation", "force_max", "force_min")

@@ -13,8 +13,8 @@ from urllib.parse import urlsplit
 
 import pytest
 
-from softafm.announce import announced_compilation
 from softafm.cli import main
+from softafm.compiled.announce import announced_compilation
 
 NO_BROWSER = "no browser: "
 PATIENCE = 120  # s: for a machine that compiles first, or is busy
@@ -24,7 +24,7 @@ PATIENCE = 120  # s: for a machine that compiles first, or is busy
 def compiled_solvers():
     with announced_compilation("tests"):
         import softafm.solvers.energy.run
-        import softafm.solvers.explicit_run
+        import softafm.solvers.paper.run
 
     return softafm.solvers
 

@@ -7,7 +7,7 @@ from pathlib import Path
 
 from hostile_input import Input, raw_file
 
-from softafm.config import document_from, example_text
+from softafm.experiment.config import document_from, example_text
 
 # Experiments
 

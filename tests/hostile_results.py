@@ -10,7 +10,7 @@ import numpy as np
 from hostile_input import Input
 from result_samples import NAMES, results
 
-from softafm.result_content import NEEDED
+from softafm.results.content import NEEDED
 
 
 def of_results(chance: random.Random) -> Iterator[Input]:

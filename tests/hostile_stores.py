@@ -10,7 +10,7 @@ from tempfile import TemporaryDirectory
 from hostile_input import Input
 
 import softafm as sa
-from softafm.campaigns.store import Store
+from softafm.sweeps.store import Store
 
 
 def of_stores(chance: random.Random) -> Iterator[Input]:

@@ -17,9 +17,9 @@ from PIL import Image
 
 import softafm as sa
 from softafm.cli import main
-from softafm.config import example_text
-from softafm.scenes import scenes_at, view_of, window
-from softafm.storyboard import instants_of
+from softafm.draw.scenes import scenes_at, view_of, window
+from softafm.draw.storyboard import instants_of
+from softafm.experiment.config import example_text
 
 LDPE = sa.Contact(
     tip=sa.Paraboloid(radius=10e-9),

@@ -12,12 +12,12 @@ import xarray as xr
 from PIL import Image
 
 import softafm as sa
-from softafm import config
 from softafm.app.documents import with_value
 from softafm.app.form import presets
 from softafm.app.links import from_query
 from softafm.app.movie import FRAMES, movie_of
-from softafm.summary import observables
+from softafm.draw.summary import observables
+from softafm.experiment import config
 
 TAP = presets()["ldpe-tapping"]
 

@@ -13,10 +13,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
-from softafm import config
 from softafm.app.colours import PALETTES, RUNS
 from softafm.app.curve_data import thinned
 from softafm.app.curves import Shown, figures, recolour
+from softafm.experiment import config
 
 
 @pytest.fixture(scope="module")

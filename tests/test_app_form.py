@@ -7,7 +7,6 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from softafm import schema
 from softafm.app.answers import added, chosen, moded, taken
 from softafm.app.documents import ordered, read_text, value_at, with_value, without, written_text
 from softafm.app.form import MODES, Alternatives, Field, preset_titles, presets, section, tables
@@ -15,8 +14,9 @@ from softafm.app.marks import MISSING, placed, with_missing
 from softafm.app.outlook import cost, outlook, problems, summary
 from softafm.app.plan import plan_of, shown_sections
 from softafm.app.uploads import keep
-from softafm.config import example_names, experiment_from
-from softafm.regime import expected_seconds, regime
+from softafm.experiment import schema
+from softafm.experiment.config import example_names, experiment_from
+from softafm.experiment.regime import expected_seconds, regime
 
 HERE = Path()
 TAP = presets()["ldpe-tapping"]

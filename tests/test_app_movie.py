@@ -12,11 +12,11 @@ from bokeh.embed import file_html, json_item
 from bokeh.models import ColumnDataSource, CustomJS, Slider
 from bokeh.resources import INLINE
 
-from softafm import config
 from softafm.app.colours import PALETTES, recolour
 from softafm.app.movie import FRAMES, movie
 from softafm.app.movie_data import movie_of
-from softafm.scenes import scenes_at, view_of, window
+from softafm.draw.scenes import scenes_at, view_of, window
+from softafm.experiment import config
 
 
 @pytest.fixture(scope="module")

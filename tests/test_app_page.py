@@ -13,7 +13,7 @@ from softafm.app.limits import Limits
 from softafm.app.page import Page
 from softafm.app.runs import Runner
 from softafm.app.take_away import netcdf_bytes, toml_text
-from softafm.config import experiment_from
+from softafm.experiment.config import experiment_from
 
 TAP = presets()["ldpe-tapping"]
 CURVE = presets()["ps-approach-curve"]

@@ -22,9 +22,9 @@ from softafm.app.page import Page
 from softafm.app.readings import MeasuredFiles, Reading, try_out
 from softafm.app.runs import Runner
 from softafm.app.take_away import netcdf_bytes, toml_text
-from softafm.config import experiment_from
-from softafm.guard import Unreadable, read_apart
-from softafm.measured import read_trajectory
+from softafm.experiment.config import experiment_from
+from softafm.files.guard import Unreadable, read_apart
+from softafm.files.measured import read_trajectory
 from softafm.tips import read_tip_profile
 
 TAP = presets()["ldpe-tapping"]
@@ -47,7 +47,7 @@ def stuck(monkeypatch):
     def sleeping(*_, **__):
         return read("stand_ins:sleeps", 3)
 
-    for place in ("softafm.app.readings.read_apart", "softafm.guard.read_apart"):
+    for place in ("softafm.app.readings.read_apart", "softafm.files.guard.read_apart"):
         monkeypatch.setattr(place, sleeping)
 
 
@@ -136,7 +136,7 @@ def test_a_page_goes_on_while_its_file_is_read(page, stuck):
 def test_a_reading_that_fails_is_told_on_the_page(page, monkeypatch):
     read = read_apart
     monkeypatch.setattr(
-        "softafm.guard.read_apart", lambda *_, **__: read("stand_ins:spins", 0, seconds=0.3)
+        "softafm.files.guard.read_apart", lambda *_, **__: read("stand_ins:spins", 0, seconds=0.3)
     )
     monkeypatch.setattr(readings, "read_apart", lambda *_, **__: read("stand_ins:is_killed", 9))
     for name, content, reason in (

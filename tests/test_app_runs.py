@@ -11,11 +11,11 @@ from pathlib import Path
 import pytest
 import xarray as xr
 
-from softafm import config
 from softafm.app.process import Process
 from softafm.app.runs import Runner
 from softafm.app.worker import Outlet, answer
-from softafm.refusals import ConfigError
+from softafm.checks.refusals import ConfigError
+from softafm.experiment import config
 
 PATIENCE = 120  # s: for a machine that compiles first, or is busy
 

@@ -15,9 +15,9 @@ from softafm.app.session import Session
 from softafm.app.tables import lines_html, numbers_html, regime_table
 from softafm.app.take_away import netcdf_bytes
 from softafm.app.worker import refuse_large
-from softafm.config import experiment_from
-from softafm.regime import Row
-from softafm.summary import observables
+from softafm.draw.summary import observables
+from softafm.experiment.config import experiment_from
+from softafm.experiment.regime import Row
 
 TAP = presets()["ldpe-tapping"]
 

@@ -11,10 +11,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import softafm as sa
-from softafm import config
 from softafm.app import take_away
+from softafm.checks.refusals import ConfigError
 from softafm.cli import main
-from softafm.refusals import ConfigError
+from softafm.experiment import config
 
 SPHERE = {"shape": "sphere", "radius": "20 nm"}
 RUBBER = {"model": "elastic", "E": "50 MPa", "poisson": 0.5}

@@ -7,12 +7,12 @@ import numpy as np
 import pytest
 
 import softafm as sa
-from softafm.campaigns.block import DONE, FAILED, WARNED, Work
-from softafm.campaigns.campaign import OBSERVABLES
-from softafm.campaigns.reading import campaign_of, table_of
-from softafm.campaigns.sweep import planned
-from softafm.config import document_from, example_text, experiment_from
-from softafm.refusals import ConfigError
+from softafm.checks.refusals import ConfigError
+from softafm.experiment.config import document_from, example_text, experiment_from
+from softafm.sweeps.block import DONE, FAILED, WARNED, Work
+from softafm.sweeps.campaign import OBSERVABLES
+from softafm.sweeps.reading import campaign_of, table_of
+from softafm.sweeps.sweep import planned
 
 TAP = document_from(example_text("ldpe-tapping"), "ldpe-tapping")
 EXAMPLES = ("attard-triangle", "ldpe-spectroscopy", "ldpe-tapping")

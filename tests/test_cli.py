@@ -19,7 +19,7 @@ from hypothesis import strategies as st
 
 import softafm as sa
 from softafm.cli import main
-from softafm.config import example_text
+from softafm.experiment.config import example_text
 
 posix = pytest.mark.skipif(os.name != "posix", reason="signals and terminals of POSIX")
 

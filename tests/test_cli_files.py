@@ -11,9 +11,9 @@ import pytest
 from result_samples import results
 
 import softafm as sa
-from softafm import guard
-from softafm.config import example_text
-from softafm.results import load_apart
+from softafm.experiment.config import example_text
+from softafm.files import guard
+from softafm.results.datasets import load_apart
 
 
 @pytest.fixture
@@ -74,9 +74,9 @@ def test_the_time_for_a_reading_follows_the_size(folder, monkeypatch):
 
 STUCK = """
 import sys
-from softafm import guard
-from softafm.config import example_text
-from softafm.results import load_apart
+from softafm.files import guard
+from softafm.experiment.config import example_text
+from softafm.results.datasets import load_apart
 from softafm.cli import main
 read = guard.read_apart
 def stuck(*_, **__):

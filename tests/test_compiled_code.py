@@ -13,14 +13,14 @@ from types import FunctionType
 
 import pytest
 
-from softafm import code_store
+from softafm.compiled import store as code_store
 
 PACKAGE = code_store.PACKAGE
 PROBE = '''
 """A loop that calls one in another file."""
 from numba import float64, types
-from softafm.compiled import compile_for
-from softafm.solvers.dense import multiply
+from softafm.compiled.functions import compile_for
+from softafm.compiled.dense import multiply
 
 @compile_for((types.Array(float64, 2, "C", readonly=True), float64[::1], float64[::1]))
 def product(matrix, x, out):
@@ -55,7 +55,7 @@ def edit(package: Path, file: str, old: str, new: str) -> None:
 def multiply_by_more(package: Path) -> None:
     edit(
         package,
-        "solvers/dense.py",
+        "compiled/dense.py",
         "total += matrix[i, j] * x[j]",
         "total += matrix[i, j] * x[j] * 1.5",
     )
@@ -89,7 +89,7 @@ def test_code_is_kept_outside_of_the_package_and_found_again(probed):
     before = {path: path.stat().st_mtime_ns for path in kept_files(probed / "kept")}
     names = [path.name for path in before]
     assert any(name.startswith("softafm.solvers.probe.product-") for name in names)
-    assert any(name.startswith("softafm.solvers.dense.multiply-") for name in names)
+    assert any(name.startswith("softafm.compiled.dense.multiply-") for name in names)
     assert ask(probed, NUMBA_CACHE_DIR=str(probed / "kept")) == (RIGHT, "")
     assert {path: path.stat().st_mtime_ns for path in kept_files(probed / "kept")} == before
     assert not list((probed / "softafm").rglob("__pycache__"))
@@ -245,7 +245,7 @@ def test_code_of_builds_that_nobody_uses_is_removed(monkeypatch, tmp_path):
 def test_the_name_of_a_build_follows_its_options(probed):
     builds = set()
     for level in ("1", "2"):
-        code = "from softafm import code_store; print(code_store.build())"
+        code = "from softafm.compiled import store as code_store; print(code_store.build())"
         environment = os.environ | {"NUMBA_OPT": level}
         done = subprocess.run([sys.executable, "-c", code], env=environment, capture_output=True)
         builds.add(done.stdout)
@@ -254,7 +254,7 @@ def test_the_name_of_a_build_follows_its_options(probed):
 
 def test_what_loops_are_made_of_stands_where_the_build_is_named_after():
     """Their functions, and whatever they import from other files of the package."""
-    from softafm.compiled import CompiledFunction
+    from softafm.compiled.functions import CompiledFunction
 
     files = [path for path in code_store._sources() if path.name != "__init__.py"]
     found = 0

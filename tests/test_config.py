@@ -12,10 +12,17 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import softafm as sa
-from softafm import rheology, samples, schema, surfaces, tips
-from softafm.config import ConfigError, Experiment, example_names, example_text, load_experiment
+from softafm import rheology, samples, surfaces, tips
+from softafm.experiment import schema
+from softafm.experiment.config import (
+    ConfigError,
+    Experiment,
+    example_names,
+    example_text,
+    load_experiment,
+)
 from softafm.surfaces import read_law
-from softafm.units import (
+from softafm.units.quantities import (
     ANGLE,
     CONCENTRATION,
     FORCE,

@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from softafm.solvers import dense
+from softafm.compiled import dense
 
 seeds = st.integers(0, 2**32 - 1)
 

@@ -7,11 +7,11 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from softafm import units
-from softafm.campaigns.designs import Between, design_of
-from softafm.campaigns.fields import field_of, plain_field, replaced
-from softafm.config import document_from, example_text
-from softafm.refusals import ConfigError
+from softafm.checks.refusals import ConfigError
+from softafm.experiment.config import document_from, example_text
+from softafm.experiment.fields import field_of, plain_field, replaced
+from softafm.sweeps.designs import Between, design_of
+from softafm.units import quantities as units
 
 TAP = document_from(example_text("ldpe-tapping"), "ldpe-tapping")
 KINDS = [kind for kind in vars(units).values() if isinstance(kind, units.Kind)]

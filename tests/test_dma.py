@@ -13,7 +13,8 @@ import pytest
 
 import softafm as sa
 from softafm.app.python_lines import python_lines
-from softafm.config import document_from, load_experiment
+from softafm.draw.sample import plot_rheology
+from softafm.experiment.config import document_from, load_experiment
 from softafm.rheology import (
     FractionalStandardLinearSolid,
     GeneralizedMaxwell,
@@ -22,7 +23,6 @@ from softafm.rheology import (
     dma_misfit,
     read_dma,
 )
-from softafm.rheology_drawing import plot_rheology
 
 BENCHMARK = Path(__file__).parents[1] / "benchmarks" / "dma.py"
 SEEDS = range(20)

@@ -11,8 +11,9 @@ import numpy as np
 import pytest
 
 import softafm as sa
-from softafm import rheology, schema, surfaces, tips
-from softafm.config import example_text, load_experiment
+from softafm import rheology, surfaces, tips
+from softafm.experiment import schema
+from softafm.experiment.config import example_text, load_experiment
 
 DOCS = Path(__file__).parents[1] / "docs"
 

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import softafm as sa
-from softafm.gathering import gather, kind_of, worst_of_each_kind
+from softafm.checks.gathering import gather, kind_of, worst_of_each_kind
 
 CONTACT = sa.Contact(
     sa.Paraboloid(10e-9),

@@ -10,8 +10,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from softafm import guard
-from softafm.guard import Unreadable, read_apart
+from softafm.files import guard
+from softafm.files.guard import Unreadable, read_apart
 
 
 def stand_in(name, *arguments, **options):
@@ -95,7 +95,7 @@ def test_it_knows_no_secrets_and_writes_nothing(tmp_path, monkeypatch):
 
 ASK = """
 import os, sys
-from softafm import guard
+from softafm.files import guard
 made = guard.subprocess.Popen
 def told(*arguments, **options):
     process = made(*arguments, **options)

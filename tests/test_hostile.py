@@ -6,7 +6,8 @@ from collections import Counter
 import hostile
 import pytest
 
-from softafm import guard, results
+from softafm.files import guard
+from softafm.results import datasets as results
 
 
 @pytest.mark.parametrize(

@@ -11,11 +11,17 @@ import pytest
 from PIL import Image
 
 import softafm as sa
-from softafm import schema
 from softafm.app.form import presets
-from softafm.campaigns.map_file import load_map, map_from
-from softafm.campaigns.patterns import blend
-from softafm.config import ConfigError, example_names, example_text, load_experiment, map_names
+from softafm.experiment import schema
+from softafm.experiment.config import (
+    ConfigError,
+    example_names,
+    example_text,
+    load_experiment,
+    map_names,
+)
+from softafm.maps.map_file import load_map, map_from
+from softafm.maps.patterns import blend
 
 SMALL = ("map.pixels=[8, 8]", "map.size=['100 nm', '50 nm']", "map.interphase=15 nm")
 GREY = np.linspace(0, 255, 16).reshape(2, 8).astype(np.uint8)

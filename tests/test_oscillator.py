@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy.optimize import brentq
 
-from softafm.oscillator import Drive
+from softafm.instrument.oscillator import Drive
 
 # CHECKS: mean height, amplitude, virial of a rigid Lennard-Jones sample; A/A0 and phase for
 # k = 28.1 N/m and Q = 430 at resonance.

@@ -11,7 +11,7 @@ from scipy.special import ellipkm1, j0, jn_zeros
 
 import softafm as sa
 from softafm import solvers
-from softafm.solvers.stepping import AdamsBashforth, ForwardEuler, RungeKutta4
+from softafm.solvers.paper.stepping import AdamsBashforth, ForwardEuler, RungeKutta4
 
 R, DOMAIN = 10e-9, 8e-9
 NODES, FUNCTIONS, STEPS = 12, 5, 200

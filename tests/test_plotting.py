@@ -10,7 +10,7 @@ import xarray as xr
 from matplotlib.colors import to_hex
 from matplotlib.figure import Figure
 
-from softafm.plotting import plot
+from softafm.draw.results import plot
 
 
 @pytest.fixture(autouse=True)

@@ -11,7 +11,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import softafm as sa
-from softafm.config import example_text, load_experiment
+from softafm.experiment.config import example_text, load_experiment
 
 W, Z0 = 0.05, 0.3e-9
 LAWS = [

@@ -10,9 +10,9 @@ import xarray as xr
 from result_samples import NAMES, results
 
 import softafm as sa
-from softafm import result_files
-from softafm.result_content import NEEDED, PROFILES
-from softafm.summary import observables
+from softafm.draw.summary import observables
+from softafm.results import files as result_files
+from softafm.results.content import NEEDED, PROFILES
 
 
 @pytest.fixture

@@ -11,7 +11,7 @@ import pytest
 import xarray as xr
 
 import softafm as sa
-from softafm.results import load_apart
+from softafm.results.datasets import load_apart
 
 CONTACT = sa.Contact(
     tip=sa.Paraboloid(10e-9),

@@ -13,6 +13,7 @@ from scipy.special import erfcx
 from scipy.special import gamma as complex_gamma
 
 from softafm import AccuracyWarning, samples
+from softafm.draw.sample import plot_rheology
 from softafm.rheology import (
     Elastic,
     FractionalStandardLinearSolid,
@@ -26,7 +27,6 @@ from softafm.rheology import (
     chain_to_prony,
     prony_to_chain,
 )
-from softafm.rheology_drawing import plot_rheology
 
 decades = st.floats(-3, 3).map(lambda x: 10.0**x)
 poisson = st.floats(-0.9, 0.5)

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 import softafm as sa
-from softafm.campaigns.imaging import AmplitudeModulation
-from softafm.campaigns.setpoint import ATTRACTIVE, BRANCHES, REPULSIVE
-from softafm.campaigns.tapped_lines import engaged_branch, setpoint_of
+from softafm.maps.imaging import AmplitudeModulation
+from softafm.maps.setpoint import ATTRACTIVE, BRANCHES, REPULSIVE
+from softafm.maps.tapped_lines import engaged_branch, setpoint_of
 from softafm.solvers import Energy
 
 LEVER = sa.Cantilever(stiffness=28.1, quality_factor=429.5, frequency=278e3)

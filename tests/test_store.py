@@ -11,11 +11,11 @@ import xarray
 from hypothesis import given
 from hypothesis import strategies as st
 
-from softafm.campaigns import store as store_module
-from softafm.campaigns.block import DONE, FAILED, UNKNOWN, WARNED, Block
-from softafm.campaigns.campaign import Campaign, Observable
-from softafm.campaigns.progress import in_words, status
-from softafm.campaigns.store import (
+from softafm.sweeps import store as store_module
+from softafm.sweeps.block import DONE, FAILED, UNKNOWN, WARNED, Block
+from softafm.sweeps.campaign import Campaign, Observable
+from softafm.sweeps.progress import in_words, status
+from softafm.sweeps.store import (
     Busy,
     Store,
     StoreError,
@@ -24,7 +24,7 @@ from softafm.campaigns.store import (
     differences,
     unpacked_size,
 )
-from softafm.campaigns.sweep import load_sweep, opened
+from softafm.sweeps.sweep import load_sweep, opened
 
 SHAPE = (3, 7)
 

@@ -4,10 +4,10 @@ from pathlib import Path
 
 import pytest
 
-from softafm import schema
-from softafm.config import document_from, example_text, experiment_from
-from softafm.refusals import ConfigError
-from softafm.suggestions import meant
+from softafm.checks.refusals import ConfigError
+from softafm.checks.suggestions import meant
+from softafm.experiment import schema
+from softafm.experiment.config import document_from, example_text, experiment_from
 
 MODELS = list(schema.CHOICES["sample"][1])
 LAWS = list(schema.CHOICES["surface"][1])
@@ -78,7 +78,7 @@ def test_every_other_word_leads_to_a_name_that_exists():
     names |= {"iterative"}
     names |= {key for table in tables for key in table.model_fields}
     names |= {*schema.MOTIONS, "tapping-map", "force-volume", "setpoint", "drive_frequency"}
-    from softafm.suggestions import _OTHER_WORDS
+    from softafm.checks.suggestions import _OTHER_WORDS
 
     assert set(_OTHER_WORDS) <= names
 

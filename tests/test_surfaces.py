@@ -14,8 +14,8 @@ from scipy.integrate import quad
 
 import softafm as sa
 from softafm import surfaces
+from softafm.draw.law import plot_surface
 from softafm.solvers.energy.surface import gap_origin
-from softafm.surface_drawing import plot_surface
 
 W, Z0 = 0.05, 3e-10
 LJ = surfaces.LennardJones.from_work_of_adhesion(W, Z0)

@@ -12,9 +12,9 @@ import xarray
 from swept import XS, YS, calm
 
 import softafm as sa
-from softafm.campaigns import sweep as sweeps
-from softafm.campaigns.store import Store
-from softafm.config import example_text
+from softafm.experiment.config import example_text
+from softafm.sweeps import sweep as sweeps
+from softafm.sweeps.store import Store
 
 TAP = tomllib.loads(example_text("ldpe-tapping"))
 HEIGHTS = ["42 nm", "43 nm", "44 nm"]

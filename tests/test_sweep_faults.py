@@ -16,9 +16,9 @@ import pytest
 from swept import XS, YS, calm, deadly
 
 import softafm as sa
-from softafm.campaigns.execution import Halted
-from softafm.campaigns.progress import status
-from softafm.config import example_text
+from softafm.experiment.config import example_text
+from softafm.sweeps.execution import Halted
+from softafm.sweeps.progress import status
 
 resource = pytest.importorskip("resource")
 
@@ -214,7 +214,7 @@ def test_a_scheduler_that_goes_away_halts_a_sweep_which_can_be_resumed(
 
 
 def test_a_scheduler_that_does_not_answer_is_named(tmp_path, monkeypatch):
-    monkeypatch.setattr("softafm.campaigns.execution._CONNECT", 0.3)
+    monkeypatch.setattr("softafm.sweeps.execution._CONNECT", 0.3)
     with pytest.raises(Halted, match=r"scheduler = tcp://127\.0\.0\.1:9: "):
         sa.sweep(calm, GRID, scheduler="tcp://127.0.0.1:9")
 

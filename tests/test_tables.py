@@ -8,9 +8,9 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 import softafm as sa
-from softafm.measured import read_columns
-from softafm.tables import Table
-from softafm.units import FREQUENCY, LENGTH, MODULUS, TIME
+from softafm.files.measured import read_columns
+from softafm.files.tables import Table
+from softafm.units.quantities import FREQUENCY, LENGTH, MODULUS, TIME
 
 EXAMPLE = "time (us),height (nm)"
 COLUMNS = {"time": TIME, "height": LENGTH}

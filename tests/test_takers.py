@@ -2,7 +2,7 @@
 
 import pytest
 
-from softafm.config import example_text
+from softafm.experiment.config import example_text
 
 SWEPT = '\n[sweep.vary]\n"sample.E0" = ["1 GPa", "2 GPa"]\n'
 

@@ -12,8 +12,8 @@ from hypothesis import strategies as st
 
 import softafm as sa
 from softafm import indentation, tips
+from softafm.draw.tip import plot_tip
 from softafm.surfaces.repulsion import Repulsion
-from softafm.tip_drawing import plot_tip
 
 R = 20e-9
 SAMPLES = np.linspace(0, 3 * R, 40)

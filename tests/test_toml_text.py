@@ -5,7 +5,7 @@ import tomllib
 
 import pytest
 
-from softafm.config import (
+from softafm.experiment.config import (
     ConfigError,
     build_table,
     document_from,
@@ -13,8 +13,8 @@ from softafm.config import (
     example_text,
     set_value,
 )
-from softafm.guard import Unreadable, read_apart
-from softafm.toml_text import parse, parse_apart
+from softafm.experiment.toml_text import parse, parse_apart
+from softafm.files.guard import Unreadable, read_apart
 
 LARGE = 900_000
 
@@ -81,7 +81,9 @@ def test_long_lists_are_refused_before_their_units_are_read():
 
 def test_a_guard_brings_tables_and_texts_of_dates():
     text = 'a = 1\nb = [1.5, "x", true]\nc = 1979-05-27\n[d]\ne = nan\n'
-    assert str(read_apart("softafm.toml_text:parse_apart", text)[0]) == str(parse_apart(text)[0])
+    assert str(read_apart("softafm.experiment.toml_text:parse_apart", text)[0]) == str(
+        parse_apart(text)[0]
+    )
     assert parse_apart("c = 1979-05-27T07:32:00Z")[0] == {"c": "1979-05-27 07:32:00+00:00"}
     with pytest.raises(Unreadable, match="is not valid TOML"):
-        read_apart("softafm.toml_text:parse_apart", "a = ")
+        read_apart("softafm.experiment.toml_text:parse_apart", "a = ")

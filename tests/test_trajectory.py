@@ -9,8 +9,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import softafm as sa
-from softafm.measured import read_path, read_trajectory
-from softafm.motions import lowest_height
+from softafm.files.measured import read_path, read_trajectory
+from softafm.instrument.motions import lowest_height
 
 CONTACT = sa.Contact(
     tip=sa.Paraboloid(10e-9),

@@ -8,8 +8,9 @@ from decimal import Decimal
 import pint
 import pytest
 
-from softafm import plain_units, units
-from softafm.units import Kind, read_quantity
+from softafm.units import plain as plain_units
+from softafm.units import quantities as units
+from softafm.units.quantities import Kind, read_quantity
 
 KINDS = {kind.noun: kind for kind in vars(units).values() if isinstance(kind, Kind)}
 SPELLINGS = """
@@ -63,9 +64,8 @@ def test_every_symbol_with_every_prefix_is_what_pint_says(registry):
 def test_plain_units_do_not_need_pint():
     read = "\n".join(f"units.read_quantity('3 {kind.si}', {kind!r})" for kind in KINDS.values())
     examples = "\n".join(f"units.read_quantity('{k.example}', {k!r})" for k in KINDS.values())
-    code = (
-        f"import sys\nfrom softafm import units\nfrom softafm.units import Kind\n{read}\n{examples}"
-    )
+    imports = "import sys\nfrom softafm.units import quantities as units"
+    code = f"{imports}\nfrom softafm.units.quantities import Kind\n{read}\n{examples}"
     subprocess.run([sys.executable, "-c", f"{code}\nassert 'pint' not in sys.modules"], check=True)
 
 

@@ -10,7 +10,7 @@ from time import perf_counter
 from PIL import Image
 
 import softafm as sa
-from softafm.campaigns.map_file import load_map
+from softafm.maps.map_file import load_map
 
 IMAGES = Path(__file__).parents[1] / "images"
 BLEND = Path(sa.__file__).parent / "examples" / "maps" / "blend.toml"

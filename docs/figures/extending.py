@@ -8,7 +8,7 @@ from numba import njit
 
 import softafm as sa
 from softafm import surfaces
-from softafm.formulas import Term
+from softafm.compiled.formulas import Term
 
 GAPS = np.geomspace(0.1e-9, 10e-9, 64)
 

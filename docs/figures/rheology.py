@@ -6,6 +6,7 @@ from time import perf_counter
 import numpy as np
 from PIL import Image
 
+from softafm.draw.sample import plot_rheology
 from softafm.rheology import (
     FractionalStandardLinearSolid,
     GeneralizedMaxwell,
@@ -14,7 +15,6 @@ from softafm.rheology import (
     dma_misfit,
     prony_to_chain,
 )
-from softafm.rheology_drawing import plot_rheology
 
 IMAGES = Path(__file__).parents[1] / "images"
 

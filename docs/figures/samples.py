@@ -7,7 +7,7 @@ from matplotlib.figure import Figure
 from PIL import Image
 
 from softafm import samples
-from softafm.drawing import COLOURS
+from softafm.draw.style import COLOURS
 
 IMAGE = Path(__file__).parents[1] / "images" / "named-samples.png"
 TIMES = 1e-9, 1e-6, 1e-3, 1.0

@@ -6,7 +6,7 @@ from PIL import Image
 
 import softafm as sa
 from softafm import surfaces
-from softafm.surface_drawing import plot_surface
+from softafm.draw.law import plot_surface
 
 IMAGES = Path(__file__).parents[1] / "images"
 W, z0 = 0.05, 0.3e-9

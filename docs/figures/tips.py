@@ -13,9 +13,9 @@ from scipy.optimize import brentq
 
 import softafm as sa
 from softafm import indentation
-from softafm.drawing import COLOURS, tidy
+from softafm.draw.style import COLOURS, tidy
+from softafm.draw.tip import draw_profiles
 from softafm.surfaces.repulsion import Repulsion
-from softafm.tip_drawing import draw_profiles
 from softafm.tips import Cone, FlatPunch, Hyperboloid, Paraboloid, PowerLawTip, Sphere
 
 R = 20e-9

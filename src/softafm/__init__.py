@@ -6,17 +6,21 @@ from importlib import import_module
 from typing import TYPE_CHECKING
 
 from softafm import indentation, samples, solvers
-from softafm.animation import animate
-from softafm.cantilever import Cantilever
 from softafm.contact import Contact
+from softafm.draw.animation import animate
+from softafm.draw.contact import plot_contact
+from softafm.draw.law import plot_surface
+from softafm.draw.sample import plot_rheology
+from softafm.draw.storyboard import plot_profiles
+from softafm.draw.tip import plot_tip
 from softafm.errors import AccuracyWarning, DivergedError, DoubtfulValueWarning
-from softafm.laboratory_drawing import plot_contact
+from softafm.instrument.cantilever import Cantilever
+from softafm.instrument.motions import Sine, Trajectory, Triangle
 from softafm.modes.approach import approach_curve
 from softafm.modes.force_distance import force_distance
 from softafm.modes.spectroscopy import force_spectroscopy
 from softafm.modes.tapping import tapping_cycle
-from softafm.motions import Sine, Trajectory, Triangle
-from softafm.results import export, load, save
+from softafm.results.datasets import export, load, save
 from softafm.rheology import (
     Elastic,
     FractionalStandardLinearSolid,
@@ -28,9 +32,6 @@ from softafm.rheology import (
     StandardLinearSolid,
     read_dma,
 )
-from softafm.rheology_drawing import plot_rheology
-from softafm.storyboard import plot_profiles
-from softafm.surface_drawing import plot_surface
 from softafm.surfaces import (
     DLVO,
     DMT,
@@ -47,7 +48,6 @@ from softafm.surfaces import (
     VanDerWaalsAttraction,
     read_law,
 )
-from softafm.tip_drawing import plot_tip
 from softafm.tips import (
     Cone,
     CustomTip,
@@ -62,13 +62,13 @@ from softafm.tips import (
 )
 
 if TYPE_CHECKING:
-    from softafm.campaigns.designs import Between
-    from softafm.campaigns.gwyddion import export_gwyddion
-    from softafm.campaigns.imaging import AmplitudeModulation, ForceVolume
-    from softafm.campaigns.map_drawing import plot_map
-    from softafm.campaigns.sample_map import SampleMap
-    from softafm.campaigns.scan import scan
-    from softafm.campaigns.sweep import load_sweep, sweep
+    from softafm.draw.maps import plot_map
+    from softafm.maps.gwyddion import export_gwyddion
+    from softafm.maps.imaging import AmplitudeModulation, ForceVolume
+    from softafm.maps.sample_map import SampleMap
+    from softafm.maps.scan import scan
+    from softafm.sweeps.designs import Between
+    from softafm.sweeps.sweep import load_sweep, sweep
 
 __all__ = [
     "DLVO",
@@ -140,20 +140,20 @@ __all__ = [
 ]
 
 _LATER = {
-    "AmplitudeModulation": "imaging",
-    "Between": "designs",
-    "ForceVolume": "imaging",
-    "SampleMap": "sample_map",
-    "export_gwyddion": "gwyddion",
-    "load_sweep": "sweep",
-    "plot_map": "map_drawing",
-    "scan": "scan",
-    "sweep": "sweep",
+    "AmplitudeModulation": "maps.imaging",
+    "Between": "sweeps.designs",
+    "ForceVolume": "maps.imaging",
+    "SampleMap": "maps.sample_map",
+    "export_gwyddion": "maps.gwyddion",
+    "load_sweep": "sweeps.sweep",
+    "plot_map": "draw.maps",
+    "scan": "maps.scan",
+    "sweep": "sweeps.sweep",
 }
-"""Names and their modules in ``campaigns``, imported when first asked for."""
+"""Names and their modules, imported when first asked for."""
 
 
 def __getattr__(name: str):
     if name not in _LATER:
         raise AttributeError(f"module 'softafm' has no attribute '{name}'")
-    return getattr(import_module(f"softafm.campaigns.{_LATER[name]}"), name)
+    return getattr(import_module(f"softafm.{_LATER[name]}"), name)

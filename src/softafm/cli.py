@@ -109,9 +109,9 @@ def run(
     changes += ["run.check=true"] if check else []
     changes += [f"run.regularise={regularise}"] if regularise is not None else []
     with _bad_input():
-        from softafm import results
-        from softafm.config import load_experiment
-        from softafm.summary import observables
+        from softafm.draw.summary import observables
+        from softafm.experiment.config import load_experiment
+        from softafm.results import datasets as results
 
         experiment = load_experiment(config, changes)
         out = _output(out, f"{config.stem}.nc", (".nc",), force)
@@ -131,10 +131,10 @@ def scan(
 ) -> None:
     """Image the sample of a map file, save the maps and show their ranges."""
     with _bad_input():
-        from softafm import results
-        from softafm._validate import whole
-        from softafm.campaigns.map_file import load_map
-        from softafm.summary import observables
+        from softafm.checks.validate import whole
+        from softafm.draw.summary import observables
+        from softafm.maps.map_file import load_map
+        from softafm.results import datasets as results
 
         workers = _cores() if workers is None else whole("--workers", workers, 1, 1024)
         experiment = load_map(config, overrides or [])
@@ -147,7 +147,7 @@ def scan(
 
 def _carried_out(what: str, run: "Callable[..., Dataset]") -> "Dataset":
     """Return what a run gives, shown as it goes on; why it ends early is told in one line."""
-    from softafm.config import ConfigError
+    from softafm.experiment.config import ConfigError
 
     try:
         with _progress() as progress:
@@ -172,7 +172,7 @@ def example(
     force: Force = False,
 ) -> None:
     """List the bundled experiment and map files, or write one to start from."""
-    from softafm.config import example_names, example_text, map_names
+    from softafm.experiment.config import example_names, example_text, map_names
 
     if name is None:
         for known in [*example_names(), *map_names()]:
@@ -206,8 +206,8 @@ def plot(
         kind = "-profiles" if profiles else ""
         out = _output(out, f"{results[0].stem}{kind}.png", _PICTURES, force)
 
-        from softafm.plotting import plot as draw
-        from softafm.storyboard import plot_profiles
+        from softafm.draw.results import plot as draw
+        from softafm.draw.storyboard import plot_profiles
 
         datasets = [_load(path) for path in results]
         if profiles:
@@ -231,7 +231,7 @@ def animate(
 ) -> None:
     """Write a movie of tip and surface; needs a result run with --profiles."""
     with _bad_input():
-        from softafm import animation
+        from softafm.draw import animation
 
         out = _output(out, "", animation.SUFFIXES, force)
         write = partial(
@@ -251,15 +251,15 @@ def animate(
 
 def _load(path: Path) -> "Dataset":
     """Read a result; ValueError, or OSError, if it is none."""
-    from softafm import results
-    from softafm.takers import refuse_other_than_result
+    from softafm.experiment.takers import refuse_other_than_result
+    from softafm.results import datasets as results
 
     refuse_other_than_result(path)
     return results.load_apart(path)
 
 
 def _time(option: str, written: str | None) -> float | None:
-    from softafm.units import TIME, read_quantity
+    from softafm.units.quantities import TIME, read_quantity
 
     try:
         return None if written is None else read_quantity(written, TIME)
@@ -271,8 +271,8 @@ def _time(option: str, written: str | None) -> float | None:
 def info(config: Config, overrides: Overrides = None) -> None:
     """Show the regime, the scales and the expected cost of an experiment, without running it."""
     with _bad_input():
-        from softafm.config import load_experiment
-        from softafm.regime import regime
+        from softafm.experiment.config import load_experiment
+        from softafm.experiment.regime import regime
 
         table = regime(load_experiment(config, overrides or []))
     _print(table)
@@ -289,8 +289,8 @@ def show(
     with _bad_input():
         out = _output(out, f"{config.stem}-contact.png", _PICTURES, force)
 
-        from softafm.config import load_experiment
-        from softafm.laboratory_drawing import plot_contact
+        from softafm.draw.contact import plot_contact
+        from softafm.experiment.config import load_experiment
 
         figure = plot_contact(load_experiment(config, overrides or []).contact)
     _save_figure(figure, out, force)
@@ -308,7 +308,8 @@ def export(
     with _bad_input():
         out = _output(out, "", (".csv", ".gwy", ".h5"), force)
 
-        from softafm import export_gwyddion, results
+        from softafm import export_gwyddion
+        from softafm.results import datasets as results
 
         dataset = _load(result)
         write = export_gwyddion if out.suffix.lower() == ".gwy" else results.export
@@ -344,10 +345,10 @@ def sweep(
         raise _BadInput("sweep: give a CAMPAIGN.toml, or --status and a store")
     with _bad_input():
         try:
-            from softafm.campaigns import sweep as sweeps
+            from softafm.sweeps import sweep as sweeps
         except ModuleNotFoundError as error:
             raise ValueError(error) from None
-        from softafm.campaigns import progress
+        from softafm.sweeps import progress
 
         if config is None:
             assert status is not None
@@ -473,7 +474,7 @@ def _save(write: Callable, out: Path, force: bool) -> None:
 
 
 def _save_content(content: bytes, out: Path, force: bool) -> None:
-    from softafm.results import write_whole
+    from softafm.results.datasets import write_whole
 
     def write(path: Path, *, overwrite: bool) -> None:
         write_whole(path, overwrite, lambda part: Path(part).write_bytes(content))

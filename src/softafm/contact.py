@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from softafm._validate import tabor_of
+from softafm.checks.validate import tabor_of
 from softafm.surfaces.limits import LONGEST
 
 if TYPE_CHECKING:

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from softafm._validate import positive
+from softafm.checks.validate import positive
 
 if TYPE_CHECKING:
     from softafm.tips import Tip

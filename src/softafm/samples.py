@@ -5,7 +5,7 @@ Every function returns a sample of ``softafm.rheology``; what a source does not 
 
 from collections.abc import Callable
 
-from softafm._validate import finite
+from softafm.checks.validate import finite
 from softafm.rheology import Elastic, GeneralizedMaxwell, Solid, StandardLinearSolid
 
 

@@ -6,13 +6,14 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from softafm import histories, sweeps
-from softafm.sweeps import DIRECTIONS, Curves
+from softafm.draw import approach_data
+from softafm.draw import histories
+from softafm.draw.approach_data import DIRECTIONS, Curves
 
 if TYPE_CHECKING:
     from xarray import Dataset
 
-AXES = {**histories.AXES, **sweeps.AXES}
+AXES = {**histories.AXES, **approach_data.AXES}
 _MOST_POINTS = 20_000
 _MISSED = 1e-4
 """Of the range of a column, by how much each round of leaving out samples may at first miss it."""
@@ -73,10 +74,10 @@ def _history_parts(result: "Dataset") -> Parts:
 
 
 def _sweep_parts(result: "Dataset") -> Parts:
-    curves = sweeps.curves_of(result)
+    curves = approach_data.curves_of(result)
     lines, jumps = {}, {}
     for direction in DIRECTIONS:
-        swept, pairs = curves[direction], sweeps.jumps_of(result, direction)
+        swept, pairs = curves[direction], approach_data.jumps_of(result, direction)
         cut = [max(pair) for pair in pairs]
         lines[direction] = {name: np.insert(v, cut, np.nan) for name, v in swept.items()}
         before, after = (

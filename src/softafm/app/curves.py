@@ -1,4 +1,4 @@
-"""Figures of results in the browser: the curves of ``softafm.plotting``, to zoom into and read."""
+"""Figures of results in the browser: the curves of ``softafm.draw.results``, to zoom into."""
 
 from collections.abc import Iterator, Sequence
 from math import inf, nan
@@ -20,10 +20,10 @@ from bokeh.models import (
 )
 from bokeh.plotting import figure as new_figure
 
-from softafm import histories
 from softafm.app.colours import Theme, in_role, recolour
 from softafm.app.curve_data import AXES, Parts, parts_of
-from softafm.units import prefixed
+from softafm.draw import histories
+from softafm.units.quantities import prefixed
 
 if TYPE_CHECKING:
     from bokeh.plotting import figure as Figure

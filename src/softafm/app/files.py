@@ -3,7 +3,7 @@
 from collections.abc import Mapping
 from typing import Any
 
-from softafm.refusals import ConfigError, shown
+from softafm.checks.refusals import ConfigError, shown
 
 _SEPARATORS = ("/", "\\", ":", "\0")
 

@@ -6,11 +6,11 @@ from functools import cache
 from inspect import Parameter, signature
 from typing import Any, get_args
 
-from softafm import schema
 from softafm.app.help_texts import help_of, summary_of
-from softafm.config import document_from, example_names, example_text
-from softafm.entries import Input
-from softafm.units import prefixed
+from softafm.experiment import schema
+from softafm.experiment.config import document_from, example_names, example_text
+from softafm.experiment.entries import Input
+from softafm.units.quantities import prefixed
 
 MODES = tuple(schema.MOTIONS)
 
@@ -31,8 +31,8 @@ _WITH_DEFAULT = ("cantilever", "motion", "solver", "run")
 class Field:
     """A key of a table, and how its value is written.
 
-    ``kind`` and ``unit`` are as in ``softafm.entries.Input``; ``example`` and ``default`` are
-    texts, "" if there is none; ``help`` tells the meaning, with SI unit and bounds.
+    ``kind`` and ``unit`` are as in ``softafm.experiment.entries.Input``; ``example`` and
+    ``default`` are texts, "" if there is none; ``help`` tells the meaning, with SI unit and bounds.
     """
 
     name: str

@@ -6,12 +6,12 @@ from collections.abc import Callable
 from functools import cache
 from typing import Any
 
-from softafm import schema
-from softafm.cantilever import Cantilever
-from softafm.measured import read_trajectory
+from softafm.experiment import schema
+from softafm.files.measured import read_trajectory
+from softafm.instrument.cantilever import Cantilever
+from softafm.instrument.motions import Sine, Trajectory, Triangle
 from softafm.modes.approach import approach_curve
 from softafm.modes.force_distance import force_distance
-from softafm.motions import Sine, Trajectory, Triangle
 from softafm.rheology import GeneralizedMaxwell, StandardLinearSolid, read_dma
 from softafm.surfaces import SumOfLaws, read_law
 from softafm.tips import read_tip_profile

@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 
-from softafm._validate import positive, whole
+from softafm.checks.validate import positive, whole
 
 
 @dataclass(frozen=True)

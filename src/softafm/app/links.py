@@ -6,8 +6,8 @@ from json import dumps
 from typing import Any
 from urllib.parse import parse_qsl, urlencode
 
-from softafm.config import set_value, value_of
-from softafm.refusals import ConfigError
+from softafm.checks.refusals import ConfigError
+from softafm.experiment.config import set_value, value_of
 
 LONGEST = 16_000
 _MOST_VALUES = 200

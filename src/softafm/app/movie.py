@@ -23,7 +23,7 @@ from bokeh.plotting import figure as new_figure
 
 from softafm.app.colours import Theme, in_role, recolour
 from softafm.app.movie_data import CURVES, Movie, movie_of
-from softafm.scenes import require_shapes
+from softafm.draw.scenes import require_shapes
 
 if TYPE_CHECKING:
     from bokeh.plotting import figure as Figure

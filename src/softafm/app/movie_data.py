@@ -6,10 +6,10 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from softafm.app.curve_data import thinned
-from softafm.histories import AXES, felt
-from softafm.scene_drawing import scales, titles, writers
-from softafm.scenes import Scenes, View, scenes_at, view_of, window
-from softafm.units import prefixed
+from softafm.draw.histories import AXES, felt
+from softafm.draw.scene_parts import scales, titles, writers
+from softafm.draw.scenes import Scenes, View, scenes_at, view_of, window
+from softafm.units.quantities import prefixed
 
 if TYPE_CHECKING:
     from xarray import Dataset

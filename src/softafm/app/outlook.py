@@ -8,9 +8,9 @@ from typing import Any
 
 from softafm.app.files import refuse_paths
 from softafm.app.form import tables
-from softafm.config import experiment_from
-from softafm.refusals import ConfigError, shown
-from softafm.regime import Row, expected_seconds, rows
+from softafm.checks.refusals import ConfigError, shown
+from softafm.experiment.config import experiment_from
+from softafm.experiment.regime import Row, expected_seconds, rows
 
 _OPTIONAL = ("solver", "run")
 _LONGEST_PATH = 60

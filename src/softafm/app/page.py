@@ -25,7 +25,7 @@ from softafm.app.session import Entry, Session, refuse_large
 from softafm.app.tables import regime_table
 from softafm.app.views import views
 from softafm.app.widgets import Form
-from softafm.refusals import ConfigError
+from softafm.checks.refusals import ConfigError
 
 FIRST = "ldpe-tapping"
 _REGIME = "Regime"

@@ -8,7 +8,7 @@ from collections.abc import Mapping
 from contextlib import suppress
 from typing import TYPE_CHECKING, Any
 
-from softafm.guard import environment
+from softafm.files.guard import environment
 
 if TYPE_CHECKING:
     from softafm.app.worker import Answer

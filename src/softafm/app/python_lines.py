@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any
 
 import softafm as sa
-from softafm.config import Experiment, experiment_from
+from softafm.experiment.config import Experiment, experiment_from
 from softafm.samples import NAMED
 
 _WIDTH = 88
@@ -59,7 +59,7 @@ def python_lines(document: Mapping[str, Any], folder: Path) -> str:
         imports.insert(0, "import numpy as np\n")
     for name in ("read_path", "read_trajectory"):
         if f"{name}(" in body:
-            imports.append(f"from softafm.measured import {name}")
+            imports.append(f"from softafm.files.measured import {name}")
     return "\n".join(imports) + "\n\n" + body
 
 

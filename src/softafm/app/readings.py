@@ -9,8 +9,8 @@ from threading import BoundedSemaphore, Event, Thread
 from time import process_time
 from typing import Any
 
-from softafm.config import LARGEST_FILE
-from softafm.guard import read_apart, seconds_for
+from softafm.experiment.config import LARGEST_FILE
+from softafm.files.guard import read_apart, seconds_for
 
 _AT_ONCE = BoundedSemaphore(4)
 """How many files are read at a time, of all users together; others wait."""
@@ -70,7 +70,7 @@ def read_document(name: str, content: bytes) -> dict[str, Any]:
     if not text.strip():
         raise ValueError(f"{name}: is empty")
     try:
-        return read_apart("softafm.toml_text:parse_apart", text)[0]
+        return read_apart("softafm.experiment.toml_text:parse_apart", text)[0]
     except ValueError as error:
         raise ValueError(f"{name}: {error}") from None
 
@@ -92,7 +92,7 @@ class MeasuredFiles:
     def read(self, read: Callable[[Path], Any], path: Path) -> Any:
         """Return what ``read`` returns; ValueError if it refuses, or while the file is being read.
 
-        It stands in for calling ``read`` under ``softafm.entries.files_read_by``.
+        It stands in for calling ``read`` under ``softafm.experiment.entries.files_read_by``.
         """
         if not path.is_file():
             return read(path)  # which says so
@@ -116,15 +116,15 @@ def _read_twice(read: Callable[[Path], Any], path: Path) -> Any:
 
 
 def try_out(reader: str, path: str) -> tuple[None, list]:
-    """Read a measured file as a form will, for ``softafm.guard``.
+    """Read a measured file as a form will, for ``softafm.files.guard``.
 
     Raises
     ------
     ValueError
         If the reader refuses it, or it takes too long.
     """
+    from softafm.experiment.schema import measured_moduli
     from softafm.rheology.dma_table import read_moduli
-    from softafm.schema import measured_moduli
 
     module, _, name = reader.partition(":")
     read = getattr(import_module(module), name)

@@ -3,7 +3,7 @@
 from typing import Any
 
 from softafm.app.session import Entry
-from softafm.units import readable
+from softafm.units.quantities import readable
 
 
 def row_of(entry: Entry) -> dict[str, Any]:

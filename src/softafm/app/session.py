@@ -180,7 +180,7 @@ class Session:
 
 def _read_result(name: str, content: bytes, most: int) -> "Dataset":
     """Read a result in a process of its own; ``most`` is its size in memory, bytes."""
-    from softafm.results import load_apart
+    from softafm.results.datasets import load_apart
 
     with TemporaryDirectory(prefix="softafm-") as folder:
         path = Path(folder) / "result.nc"

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, Literal
 
 from softafm.app.links import from_query, to_query
 from softafm.app.python_lines import python_lines
-from softafm.schema import MOTIONS
+from softafm.experiment.schema import MOTIONS
 
 if TYPE_CHECKING:
     from xarray import Dataset
@@ -47,7 +47,7 @@ def command_line(document: Mapping[str, Any]) -> str:
 
 def csv_bytes(result: "Dataset") -> bytes:
     """Return the curves of a result as ``softafm.export`` writes them to CSV."""
-    from softafm.results import export
+    from softafm.results.datasets import export
 
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "curves.csv"
@@ -57,7 +57,7 @@ def csv_bytes(result: "Dataset") -> bytes:
 
 def netcdf_bytes(result: "Dataset") -> bytes:
     """Return a result as ``softafm.save`` writes it, for ``softafm.load``."""
-    from softafm.results import save
+    from softafm.results.datasets import save
 
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "result.nc"
@@ -70,14 +70,14 @@ def picture(
     kind: Literal["png", "svg"],
     labels: Sequence[str] | None = None,
 ) -> bytes:
-    """Return the figure that ``softafm.plotting.plot`` draws of results of one mode.
+    """Return the figure that ``softafm.draw.results.plot`` draws of results of one mode.
 
     Raises
     ------
     ValueError
         As ``plot``, among others if the modes differ.
     """
-    from softafm.plotting import plot
+    from softafm.draw.results import plot
 
     content = io.BytesIO()
     plot(list(results), labels).savefig(content, format=kind)

@@ -45,7 +45,7 @@ def views(
 
 
 def _numbers(entries: list[Entry]) -> pn.Column:
-    from softafm.summary import observables
+    from softafm.draw.summary import observables
 
     tables = [numbers_html(e.label, observables(e.result), e.warnings) for e in entries]
     return pn.Column(*map(html, tables), scroll=True, sizing_mode="stretch_both")

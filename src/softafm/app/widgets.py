@@ -23,7 +23,7 @@ from softafm.app.outlook import Outlook, outlook
 from softafm.app.plan import Shown, plan_of, shown_sections
 from softafm.app.readings import MeasuredFiles
 from softafm.app.uploads import keep
-from softafm.entries import files_read_by
+from softafm.experiment.entries import files_read_by
 
 _LONGEST_TEXT = 20_000
 

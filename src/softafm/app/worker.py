@@ -18,9 +18,9 @@ from pathlib import Path
 from time import monotonic
 from typing import IO, Any, Literal
 
-from softafm.config import document_from, example_text, experiment_from
 from softafm.errors import AccuracyWarning, DivergedError
-from softafm.guard import bound_memory
+from softafm.experiment.config import document_from, example_text, experiment_from
+from softafm.files.guard import bound_memory
 
 Answer = tuple[Literal["ready", "progress", "warning", "result", "problem"], Any]
 """``ready`` comes once, at the start; of a run there are any number of ``progress`` (fraction,

@@ -106,7 +106,7 @@ def _inverse(matrix):
 
     By the solvers' own factorisation: the bits of LAPACK's depend on the number of threads.
     """
-    from softafm.solvers.dense import factorise, solve_factorised
+    from softafm.compiled.dense import factorise, solve_factorised
 
     factorise(matrix, len(matrix))
     inverse = np.eye(len(matrix))

@@ -4,7 +4,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from softafm.result_content import BRANCHES
+from softafm.results.content import BRANCHES
 
 _APPROACHES, _AMPLITUDES = 2000, 400
 
@@ -42,7 +42,7 @@ class AmplitudeCurve:
     taps
         A ``TapMap`` that has been explored.
     drive
-        The ``softafm.oscillator.Drive`` of the lever.
+        The ``softafm.instrument.oscillator.Drive`` of the lever.
     """
 
     def __init__(self, taps, drive):

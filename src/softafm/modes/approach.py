@@ -10,22 +10,22 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from softafm._validate import finite, positive, tolerance_of
-from softafm.cantilever import Cantilever
+from softafm.checks.gathering import Placed, collect_warnings, gather
+from softafm.checks.validate import finite, positive, tolerance_of
 from softafm.contact import Contact
 from softafm.errors import AccuracyWarning
-from softafm.gathering import Placed, collect_warnings, gather
+from softafm.instrument.cantilever import Cantilever
+from softafm.instrument.motions import Sine
+from softafm.instrument.oscillator import Drive
 from softafm.modes.amplitude_curve import BRANCHES, AmplitudeCurve, Solutions
 from softafm.modes.check import Scales, checked, finer_run
 from softafm.modes.start import refuse_other_than_cantilever, refuse_tapped_flow, regularised
 from softafm.modes.tap_map import OBSERVABLES, TapMap
 from softafm.modes.tapping import tap_observables
-from softafm.motions import Sine
-from softafm.oscillator import Drive
 from softafm.progress import Progress, reporting
-from softafm.results import curve_dataset, record_regularisation
+from softafm.results.datasets import curve_dataset, record_regularisation
 from softafm.solvers.energy import Energy
-from softafm.units import readable
+from softafm.units.quantities import readable
 
 if TYPE_CHECKING:
     from xarray import Dataset
@@ -50,7 +50,8 @@ def approach_curve(
 
     The tip oscillates about the mean height Z with amplitude A, in a steady cycle each, and the
     drive stays what it is. Where several heights belong to one amplitude all are found, and which
-    of them attract follows from the slow drift of amplitude and phase (``softafm.oscillator``).
+    of them attract follows from the slow drift of amplitude and phase
+    (``softafm.instrument.oscillator``).
 
     Parameters
     ----------

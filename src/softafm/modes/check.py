@@ -8,10 +8,10 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from softafm._validate import one_of, tolerance_of
+from softafm.checks.validate import one_of, tolerance_of
 from softafm.errors import AccuracyWarning, DivergedError
 from softafm.progress import Progress, reporting
-from softafm.results import describe
+from softafm.results.datasets import describe
 from softafm.solvers.energy import Energy
 
 if TYPE_CHECKING:

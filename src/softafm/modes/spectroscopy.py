@@ -3,14 +3,14 @@
 from functools import partial
 from typing import TYPE_CHECKING
 
-from softafm.cantilever import Cantilever
 from softafm.contact import Contact
+from softafm.instrument.cantilever import Cantilever
+from softafm.instrument.motions import Sine, Trajectory, Triangle
 from softafm.modes.check import Scales, checked, finer_run
 from softafm.modes.force_distance import ramp_observables
 from softafm.modes.start import carry, refuse_other_than_cantilever, regularised
-from softafm.motions import Sine, Trajectory, Triangle
 from softafm.progress import Progress
-from softafm.results import dataset, record_regularisation
+from softafm.results.datasets import dataset, record_regularisation
 
 if TYPE_CHECKING:
     from xarray import Dataset

@@ -3,10 +3,10 @@
 import warnings
 from dataclasses import replace
 
-from softafm._validate import tabor_of, tolerance_of
-from softafm.cantilever import Cantilever
+from softafm.checks.validate import tabor_of, tolerance_of
 from softafm.contact import Contact
 from softafm.errors import AccuracyWarning
+from softafm.instrument.cantilever import Cantilever
 from softafm.progress import reporting
 from softafm.solvers.energy import Energy
 

@@ -7,11 +7,11 @@ from typing import TYPE_CHECKING, Literal
 import numpy as np
 
 from softafm.contact import Contact
+from softafm.instrument.motions import Sine
 from softafm.modes.check import Scales, checked, finer_run
 from softafm.modes.start import carry, regularised
-from softafm.motions import Sine
 from softafm.progress import Progress
-from softafm.results import dataset, record_regularisation
+from softafm.results.datasets import dataset, record_regularisation
 
 if TYPE_CHECKING:
     from xarray import Dataset

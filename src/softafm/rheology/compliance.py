@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from softafm._validate import positive
+from softafm.checks.validate import positive
 
 LONG = 1e6
 """Retardation time of the mode that stands for steady flow, in durations of the experiment."""

@@ -7,11 +7,18 @@ from typing import NamedTuple
 
 import numpy as np
 
-from softafm._validate import poisson_ratio
+from softafm.checks.validate import poisson_ratio
+from softafm.files.tables import Column, Table, shown
 from softafm.rheology.closest import refuse_impossible
 from softafm.rheology.dma import sort_moduli
-from softafm.tables import Column, Table, shown
-from softafm.units import ANGLE, ANGULAR_FREQUENCY, FREQUENCY, MODULUS, Kind, read_quantity
+from softafm.units.quantities import (
+    ANGLE,
+    ANGULAR_FREQUENCY,
+    FREQUENCY,
+    MODULUS,
+    Kind,
+    read_quantity,
+)
 
 EXAMPLE = "frequency (Hz),storage (MPa),loss (MPa)"
 _FREQUENCY = "frequency", "freq", "freq.", "f", "oscillation frequency", "test frequency"

@@ -6,7 +6,7 @@ from typing import ClassVar, NamedTuple
 
 import numpy as np
 
-from softafm._validate import poisson_ratio, positive
+from softafm.checks.validate import poisson_ratio, positive
 from softafm.rheology.lists import window_of
 from softafm.rheology.represented import Represented, exponent_of
 from softafm.rheology.series import Response, error_of

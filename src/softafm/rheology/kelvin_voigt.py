@@ -5,7 +5,7 @@ from typing import ClassVar
 
 import numpy as np
 
-from softafm._validate import poisson_ratio, positive
+from softafm.checks.validate import poisson_ratio, positive
 from softafm.rheology.compliance import ReducedCompliance
 from softafm.rheology.lists import as_many, positives
 from softafm.rheology.solid import Solid

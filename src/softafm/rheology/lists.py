@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from softafm._validate import numbers
+from softafm.checks.validate import numbers
 
 
 def positives(name: str, values, unit: str, *, zeros: bool = False) -> tuple[float, ...]:

@@ -8,7 +8,7 @@ from typing import ClassVar
 
 import numpy as np
 
-from softafm._validate import finite, poisson_ratio, positive
+from softafm.checks.validate import finite, poisson_ratio, positive
 from softafm.errors import AccuracyWarning
 from softafm.rheology.compliance import ReducedCompliance
 from softafm.rheology.dma import dma_misfit, warn_of_misfit

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 from math import gamma
 from typing import ClassVar, NamedTuple
 
-from softafm._validate import poisson_ratio, positive
+from softafm.checks.validate import poisson_ratio, positive
 from softafm.rheology.lists import window_of
 from softafm.rheology.represented import Represented, exponent_of
 from softafm.rheology.series import Response, error_of

@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from softafm._validate import finite
+from softafm.checks.validate import finite
 from softafm.rheology.closest import (
     closest,
     closest_of_all,

@@ -4,7 +4,7 @@ from abc import abstractmethod
 from functools import cached_property
 from math import pi
 
-from softafm._validate import finite
+from softafm.checks.validate import finite
 from softafm.rheology.compliance import ReducedCompliance
 from softafm.rheology.lists import samples
 from softafm.rheology.series import Response, Series, fewest_modes

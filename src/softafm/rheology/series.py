@@ -7,7 +7,7 @@ from typing import NamedTuple, Protocol
 
 import numpy as np
 
-from softafm._validate import finite
+from softafm.checks.validate import finite
 from softafm.rheology.compliance import ReducedCompliance
 
 MOST_MODES = 40

@@ -2,7 +2,7 @@
 
 from numba import float64, int64
 
-from softafm.compiled import compile_for
+from softafm.compiled.functions import compile_for
 
 _LONGEST = 10.0
 """How many times as long as one beside it an interval may be for a cubic to cross it."""

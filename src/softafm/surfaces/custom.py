@@ -6,7 +6,7 @@ from typing import ClassVar
 
 import numpy as np
 
-from softafm.formulas import Term, bound_parameters, first_line
+from softafm.compiled.formulas import Term, bound_parameters, first_line
 from softafm.surfaces.law import SurfaceLaw
 
 _GAPS = np.geomspace(1e-12, 1e-6, 301)

@@ -4,8 +4,8 @@ from dataclasses import dataclass, replace
 from math import pi
 from typing import ClassVar
 
-from softafm._validate import between, positive
-from softafm.formulas import Term
+from softafm.checks.validate import between, positive
+from softafm.compiled.formulas import Term
 from softafm.surfaces.attraction import attraction
 from softafm.surfaces.law import SurfaceLaw
 from softafm.surfaces.limits import length

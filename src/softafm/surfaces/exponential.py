@@ -4,8 +4,8 @@ from dataclasses import dataclass, field, replace
 from math import log
 from typing import ClassVar
 
-from softafm._validate import positive
-from softafm.formulas import Term
+from softafm.checks.validate import positive
+from softafm.compiled.formulas import Term
 from softafm.surfaces.law import SurfaceLaw
 from softafm.surfaces.limits import length
 from softafm.surfaces.repulsion import exponential

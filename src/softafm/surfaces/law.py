@@ -7,7 +7,7 @@ from typing import ClassVar
 
 import numpy as np
 
-from softafm.formulas import Term
+from softafm.compiled.formulas import Term
 
 _GAPS = np.geomspace(1e-12, 1e-6, 6001)
 _OUTWARDS = np.geomspace(1e-3, 1e2, 4001)
@@ -137,7 +137,7 @@ class SurfaceLaw(ABC):
     @property
     def compiled_pressure(self):
         """p and Φ compiled for solvers, and their parameters (see ``softafm.compiled``)."""
-        from softafm.compiled import pressure_functions
+        from softafm.compiled.functions import pressure_functions
 
         pressure, potential = pressure_functions(tuple(term.shape for term in self.terms))
         values = [value for term in self.terms for value in term.packed]

@@ -1,6 +1,6 @@
 """Lengths that surface forces may have."""
 
-from softafm._validate import between
+from softafm.checks.validate import between
 
 SHORTEST, LONGEST = 2e-12, 1e-6
 """Lengths that surface forces may have, m: from a hundredth of an atom to a wave of light."""

@@ -2,9 +2,9 @@
 
 from pathlib import Path
 
-from softafm.measured import read_columns
+from softafm.files.measured import read_columns
 from softafm.surfaces.tabulated import Tabulated
-from softafm.units import LENGTH, PRESSURE
+from softafm.units.quantities import LENGTH, PRESSURE
 
 
 def read_law(path: str | Path) -> Tabulated:

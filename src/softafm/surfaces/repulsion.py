@@ -5,8 +5,8 @@ from typing import ClassVar
 
 import numpy as np
 
-from softafm._validate import positive
-from softafm.formulas import Term
+from softafm.checks.validate import positive
+from softafm.compiled.formulas import Term
 from softafm.surfaces.law import SurfaceLaw
 from softafm.surfaces.limits import length
 

@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 from typing import ClassVar
 
-from softafm.formulas import Term
+from softafm.compiled.formulas import Term
 from softafm.surfaces.law import SurfaceLaw
 
 

@@ -2,7 +2,7 @@
 
 from math import degrees, pi
 
-from softafm._validate import finite
+from softafm.checks.validate import finite
 
 
 def half_angle_of(value: float) -> float:

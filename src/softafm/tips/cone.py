@@ -3,8 +3,8 @@
 from dataclasses import dataclass
 from typing import ClassVar
 
-from softafm._validate import positive
-from softafm.formulas import Term
+from softafm.checks.validate import positive
+from softafm.compiled.formulas import Term
 from softafm.tips.angles import half_angle_of
 from softafm.tips.arc import arc_and_flank, flank
 from softafm.tips.tip import Tip

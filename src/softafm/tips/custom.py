@@ -7,7 +7,7 @@ from typing import ClassVar
 
 import numpy as np
 
-from softafm.formulas import Term, bound_parameters, first_line
+from softafm.compiled.formulas import Term, bound_parameters, first_line
 from softafm.tips.tip import Tip
 
 _RADII = np.geomspace(1e-13, 1e-2, 1101)

@@ -6,8 +6,8 @@ from typing import ClassVar
 
 import numpy as np
 
-from softafm._validate import positive
-from softafm.formulas import Term
+from softafm.checks.validate import positive
+from softafm.compiled.formulas import Term
 from softafm.tips.angles import half_angle_of
 from softafm.tips.tip import Tip, height_of
 

@@ -6,8 +6,8 @@ from typing import ClassVar
 
 import numpy as np
 
-from softafm._validate import numbers
-from softafm.formulas import Term
+from softafm.checks.validate import numbers
+from softafm.compiled.formulas import Term
 from softafm.tips.tip import Tip
 
 _LEAST = 4

@@ -4,8 +4,8 @@ from dataclasses import dataclass
 from math import sqrt
 from typing import ClassVar
 
-from softafm._validate import positive
-from softafm.formulas import Term
+from softafm.checks.validate import positive
+from softafm.compiled.formulas import Term
 from softafm.tips.tip import Tip, height_of
 
 

@@ -3,8 +3,8 @@
 from dataclasses import dataclass
 from typing import ClassVar
 
-from softafm._validate import finite, positive
-from softafm.formulas import Term
+from softafm.checks.validate import finite, positive
+from softafm.compiled.formulas import Term
 from softafm.tips.tip import Tip, height_of
 
 _LARGEST = 50.0

@@ -2,9 +2,9 @@
 
 from pathlib import Path
 
-from softafm.tables import Table
+from softafm.files.tables import Table
 from softafm.tips.measured import MeasuredTip
-from softafm.units import LENGTH
+from softafm.units.quantities import LENGTH
 
 
 def read_tip_profile(path: str | Path) -> MeasuredTip:

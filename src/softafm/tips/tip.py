@@ -6,8 +6,8 @@ from typing import ClassVar
 
 import numpy as np
 
-from softafm._validate import finite
-from softafm.formulas import Term
+from softafm.checks.validate import finite
+from softafm.compiled.formulas import Term
 
 _FIRST_RADIUS = 1e-12
 _MOST_DOUBLINGS = 200
@@ -82,7 +82,7 @@ class Tip(ABC):
     @property
     def compiled_profile(self):
         """The profile compiled for solvers, and its parameters (see ``softafm.compiled``)."""
-        from softafm.compiled import profile_function
+        from softafm.compiled.functions import profile_function
 
         return profile_function(self.term.shape), np.array(self.term.packed)
 

@@ -13,8 +13,8 @@ from math import inf, pi
 
 from numba import float64, int64
 
-from softafm.compiled import POTENTIAL, PRESSURE, PROFILE, compile_for, pointer
-from softafm.solvers.dense import factorise, multiply, solve_factorised
+from softafm.compiled.dense import factorise, multiply, solve_factorised
+from softafm.compiled.functions import POTENTIAL, PRESSURE, PROFILE, compile_for, pointer
 from softafm.solvers.energy.layout import CLOCK, MATRIX, MESH, ROOM, VECTOR
 from softafm.solvers.energy.tuning import (
     FARTHEST_GUESS,

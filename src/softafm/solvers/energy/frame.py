@@ -5,7 +5,7 @@ from math import asinh, floor, log, sqrt
 import numpy as np
 from numba import float64
 
-from softafm.compiled import compile_for
+from softafm.compiled.functions import compile_for
 from softafm.solvers.energy.layout import (
     CLOCK,
     CONSTANT_VECTOR,

@@ -4,7 +4,7 @@ from math import exp, pi
 
 from numba import float64, int64
 
-from softafm.compiled import compile_for, inlined
+from softafm.compiled.functions import compile_for, inlined
 from softafm.solvers.energy.frame import transfer
 from softafm.solvers.energy.layout import BACKGROUND, CONSTANT_VECTOR, MATRIX, VECTOR
 from softafm.solvers.energy.tuning import DAMPING, RINGING, SHORT, STIFF

@@ -7,7 +7,7 @@ from math import sqrt
 import numpy as np
 
 from softafm.errors import AccuracyWarning, DivergedError
-from softafm.kernels import still
+from softafm.instrument.compiled_motions import still
 from softafm.solvers.energy.layout import (
     DEFORMATION,
     FALL,

@@ -5,9 +5,9 @@ from dataclasses import dataclass
 from time import perf_counter
 from typing import ClassVar
 
-from softafm._validate import finite, positive
-from softafm.announce import announced_compilation
-from softafm.motions import lowest_height
+from softafm.checks.validate import finite, positive
+from softafm.compiled.announce import announced_compilation
+from softafm.instrument.motions import lowest_height
 from softafm.solvers.history import History
 
 

@@ -6,8 +6,8 @@ from typing import NamedTuple
 import numpy as np
 from numba import float64, int64, types
 
-from softafm.compiled import HEIGHT, PRESSURE, PROFILE, compile_for, inlined, pointer
-from softafm.solvers.dense import multiply, row_products, solve_factorised
+from softafm.compiled.dense import multiply, row_products, solve_factorised
+from softafm.compiled.functions import HEIGHT, PRESSURE, PROFILE, compile_for, inlined, pointer
 from softafm.solvers.energy.equilibrium import equilibrate, raise_tip, tip_force
 from softafm.solvers.energy.frame import following_frame, radius_of_gap, reframe
 from softafm.solvers.energy.layout import (

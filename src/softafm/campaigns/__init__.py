@@ -1,1 +1,0 @@
-"""Sweeps and maps: many runs of one kind, kept in a store."""

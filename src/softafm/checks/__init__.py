@@ -1,0 +1,1 @@
+"""How values are refused or doubted, and how that is told."""

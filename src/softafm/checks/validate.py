@@ -1,0 +1,92 @@
+"""One-line refusals of bad numbers: field, value, unit and what would be valid."""
+
+from math import isfinite
+
+from softafm.checks.plausible import doubt
+
+
+def positive(name: str, value: float, unit: str) -> float:
+    """Return ``value`` as a float if it is finite and above zero, else raise ValueError."""
+    number = _number(name, value, unit)
+    if number <= 0:
+        raise ValueError(f"{name} = {number:g} {unit}".rstrip() + ": must be greater than 0")
+    doubt(name, number, unit)
+    return number
+
+
+def finite(name: str, value: float, unit: str) -> float:
+    """Return ``value`` as a float if it is a finite real number, else raise ValueError."""
+    number = _number(name, value, unit)
+    doubt(name, number, unit)
+    return number
+
+
+def _number(name: str, value: float, unit: str) -> float:
+    try:
+        if isinstance(value, bool | str | bytes):
+            raise TypeError
+        number = float(value)
+    except (TypeError, ValueError):
+        raise ValueError(f"{name} = {value!r}: must be a number{_in(unit)}") from None
+    if not isfinite(number):
+        raise ValueError(f"{name} = {number} {unit}".rstrip() + ": must be a finite number")
+    return number
+
+
+def _in(unit: str) -> str:
+    return f" in {unit}" if unit else ""
+
+
+def between(name: str, value: float, unit: str, least: float, most: float) -> float:
+    """Return ``value`` as a float if it lies from ``least`` to ``most``."""
+    number = _number(name, value, unit)
+    if not least <= number <= most:
+        shown = f"{name} = {number:g} {unit}".rstrip()
+        raise ValueError(f"{shown}: must be between {least:g} and {most:g} {unit}".rstrip())
+    return number
+
+
+def numbers(name: str, values, unit: str) -> tuple[float, ...]:
+    """Return the values as a tuple of finite floats, else raise ValueError naming the entry."""
+    if isinstance(values, str | bytes | dict) or not hasattr(values, "__iter__"):
+        raise ValueError(f"{name} = {values!r}: must be a list of numbers{_in(unit)}")
+    found = tuple(_number(f"{name}[{i}]", value, unit) for i, value in enumerate(values))
+    if found:
+        largest = max(range(len(found)), key=lambda i: abs(found[i]))
+        doubt(f"{name}[{largest}]", found[largest], unit)
+    return found
+
+
+def whole(name: str, value: int, least: int, most: int) -> int:
+    """Return ``value`` if it is a whole number from ``least`` to ``most``."""
+    if isinstance(value, bool) or not isinstance(value, int) or not least <= value <= most:
+        raise ValueError(f"{name} = {value!r}: must be a whole number from {least} to {most}")
+    return value
+
+
+def one_of(name: str, value, choices: tuple):
+    """Return ``value`` if it is one of the choices."""
+    if not any(
+        value is choice or (isinstance(value, str) and value == choice) for choice in choices
+    ):
+        valid = " or ".join(map(repr, choices))
+        raise ValueError(f"{name} = {value!r}: must be {valid}")
+    return value
+
+
+def poisson_ratio(value: float) -> float:
+    """Return ``value`` if it lies in (-1, 0.5], the range of stable isotropic solids."""
+    number = finite("poisson", value, "")
+    if not -1 < number <= 0.5:
+        raise ValueError(f"poisson = {number:g}: must be above -1 and at most 0.5")
+    return number
+
+
+def tolerance_of(value: float) -> float:
+    """Return ``value`` if it is a tolerance that solvers can keep, 1e-5 to 0.1."""
+    return between("tolerance", value, "", 1e-5, 0.1)
+
+
+def tabor_of(name: str, value: float) -> float:
+    """Return ``value`` if it is a Tabor number that a contact can be given, 0.1 to 100."""
+    return between(name, value, "", 0.1, 100)

@@ -1,0 +1,1 @@
+"""Compiled code: how functions are compiled, kept between processes, and what all loops share."""

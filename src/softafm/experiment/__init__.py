@@ -1,0 +1,1 @@
+"""Experiment files: from TOML to the objects a Python user would build."""

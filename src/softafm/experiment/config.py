@@ -1,0 +1,387 @@
+"""Experiment files: TOML with units as text, read into the objects a Python user would build."""
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass, field
+from importlib import resources
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from softafm.checks.refusals import ConfigError, as_written, nearest, one_of, shown, unknown
+from softafm.contact import Contact
+from softafm.experiment import schema
+from softafm.experiment.takers import refuse_result, refuse_unless
+from softafm.experiment.toml_text import parse
+from softafm.modes.check import finer_run
+from softafm.modes.force_distance import ramp_observables
+from softafm.modes.start import carry, refuse_start_inside, refuse_unable, regularised
+from softafm.modes.tapping import tap_observables
+
+if TYPE_CHECKING:
+    from xarray import Dataset
+
+LARGEST_FILE = 1_000_000
+_MOST_NAMES = 8
+"""How many tables deep an override may go."""
+_TABLES = ("tip", "sample", "surface", "motion")
+_OPTIONAL_TABLES = ("solver", "run")
+
+
+@dataclass(frozen=True)
+class Experiment:
+    """What an experiment file describes, ready to run.
+
+    Parameters
+    ----------
+    mode
+        ``"force-distance"``, ``"force-spectroscopy"``, ``"tapping-cycle"`` or
+        ``"approach-curve"``.
+    contact, motion
+        What touches, and how the tip moves, or the base of its cantilever; of an approach curve
+        free amplitude, amplitude ratios and frequency of the drive.
+    cantilever
+        What carries the tip, in a mode that needs one.
+    solver
+        An object from ``softafm.solvers``, or None for the default one.
+    tolerance, profiles, check, regularise
+        As in ``softafm.force_distance``.
+    document
+        The file's tables as they were written, overrides included.
+    """
+
+    mode: str
+    contact: Contact
+    motion: Any
+    cantilever: Any = None
+    solver: Any = None
+    tolerance: float = 1e-2
+    profiles: bool = False
+    check: bool = False
+    regularise: float | None = None
+    document: Mapping[str, Any] = field(default_factory=dict, repr=False, compare=False)
+
+    def run(self, progress: bool | Callable[[float, str], None] | None = None) -> "Dataset":
+        """Call the mode's public function and return its dataset.
+
+        Raises
+        ------
+        ConfigError
+            If the mode refuses a value of the file.
+        """
+        import softafm as sa
+
+        options = {
+            name: getattr(self, name) for name in ("solver", "tolerance", "check", "regularise")
+        }
+        options["progress"] = progress
+        motion = self.motion
+        with self._told_as_written():
+            if self.mode == "approach-curve":
+                return sa.approach_curve(
+                    self.contact,
+                    self.cantilever,
+                    motion.free_amplitude,
+                    motion.amplitude_ratio,
+                    drive_frequency=motion.drive_frequency,
+                    **options,
+                )
+            options["profiles"] = self.profiles
+            if self.mode == "force-distance":
+                return sa.force_distance(self.contact, motion, **options)
+            if self.mode == "force-spectroscopy":
+                return sa.force_spectroscopy(self.contact, self.cantilever, motion, **options)
+            return sa.tapping_cycle(
+                self.contact,
+                amplitude=motion.amplitude,
+                mean_height=motion.mean_height,
+                frequency=motion.frequency,
+                cycles=motion.cycles,
+                **options,
+            )
+
+    def observables(self) -> dict[str, Any]:
+        """Return what ``run`` observes by name, without its dataset: that takes a while of its own.
+
+        Raises
+        ------
+        ConfigError
+            As ``run``.
+        """
+        if self.check or self.mode == "approach-curve":
+            return {str(name): found.values for name, found in self.run().variables.items()}
+        with self._told_as_written():
+            contact = regularised(self.contact, self.regularise)
+            lever = {} if self.cantilever is None else {"stiffness": self.cantilever.stiffness}
+            *_, history = carry(
+                contact, self.motion, self.solver, self.tolerance, False, None, **lever
+            )
+        if self.mode == "tapping-cycle":
+            found = tap_observables(contact, self.motion, history)
+        else:
+            path = history.motion.height(history.time) if lever else history.tip_height
+            found = ramp_observables(history, path)
+        return {name: values for name, (_, values) in found.items()}
+
+    @contextmanager
+    def _told_as_written(self) -> Iterator[None]:
+        """Reword what a mode refuses with what the file says."""
+        try:
+            yield
+        except ValueError as error:
+            for table in ("motion", "run"):
+                line = as_written(table, self.document.get(table, {}), error)
+                if line is not None:
+                    raise ConfigError([line]) from error
+            raise
+
+
+def load_experiment(path: str | Path, overrides: Sequence[str] = ()) -> Experiment:
+    """Read a TOML experiment file, replacing values by overrides such as ``"sample.E0=3GPa"``.
+
+    Raises
+    ------
+    ConfigError
+        If the file cannot be read or describes no valid experiment; each line of the message names
+        a field, the value given and what would be valid.
+    """
+    path = Path(path)
+    document = load_document(path)
+    for override in overrides:
+        set_value(document, override)
+    return experiment_from(document, path.parent)
+
+
+def example_names() -> list[str]:
+    """Return the names of the bundled experiment files."""
+    return _bundled("examples")
+
+
+def map_names() -> list[str]:
+    """Return the names of the bundled map files, which ``softafm scan`` takes."""
+    return _bundled("examples", "maps")
+
+
+def _bundled(*folders: str) -> list[str]:
+    folder = resources.files("softafm").joinpath(*folders)
+    return sorted(f.name[:-5] for f in folder.iterdir() if f.name.endswith(".toml"))
+
+
+def example_text(name: str) -> str:
+    """Return a bundled experiment or map file; ConfigError if there is none of that name."""
+    known = [*example_names(), *map_names()]
+    if name not in known:
+        raise ConfigError([f"example {shown(name)}: unknown; {nearest(name, known)}"])
+    folders = ("examples", "maps") if name in map_names() else ("examples",)
+    file = resources.files("softafm").joinpath(*folders, f"{name}.toml")
+    return file.read_text(encoding="utf-8")
+
+
+def load_document(path: str | Path) -> dict[str, Any]:
+    """Return the tables of a TOML file; ConfigError if it cannot be read."""
+    path, name = Path(path), str(path)
+    try:
+        refuse_result(path)
+        if not path.is_file():
+            raise ConfigError([f"{name}: {'is a directory' if path.is_dir() else 'no such file'}"])
+        size = path.stat().st_size
+        if size > LARGEST_FILE:
+            raise ConfigError(
+                [f"{name}: is {size / 1e6:.1f} MB large; an experiment file has at most 1 MB"]
+            )
+        text = path.read_text(encoding="utf-8-sig")
+    except OSError as error:
+        raise ConfigError([f"{name}: {error.strerror or error}"]) from None
+    except UnicodeDecodeError as error:
+        raise ConfigError(
+            [f"{name}: is not text in UTF-8 (byte {error.start}); save it as UTF-8"]
+        ) from None
+    return document_from(text, name)
+
+
+def document_from(text: str, name: str) -> dict[str, Any]:
+    """Return the tables of an experiment file's text; ``name`` is what a ConfigError calls it."""
+    if not text.strip():
+        raise ConfigError([f"{name}: is empty; 'softafm example' shows what it may hold"])
+    try:
+        return parse(text)
+    except ValueError as error:
+        raise ConfigError([f"{name}: {error}"]) from None
+
+
+def set_value(document: dict[str, Any], override: str) -> None:
+    """Set one value of a document by an override such as ``"sample.E0=3GPa"``, in place.
+
+    Raises
+    ------
+    ConfigError
+        If it is not of this form, or a value is where a table would be.
+    """
+    key, equals, text = override.partition("=")
+    names = [name.strip() for name in key.split(".")]
+    if not equals or not all(names) or len(names) > _MOST_NAMES:
+        raise ConfigError(
+            [f"override {shown(override)}: must be key=value, such as sample.E0=3GPa"]
+        )
+    table = document
+    for depth, name in enumerate(names[:-1], start=1):
+        table = table.setdefault(name, {})
+        if not isinstance(table, dict):
+            parent = ".".join(names[:depth])
+            raise ConfigError([f"override {shown(override)}: {parent} is a value, not a table"])
+    table[names[-1]] = value_of(text.strip())
+
+
+def value_of(text: str) -> Any:
+    """Read a number, flag or list as in TOML; anything else is text that needs no quotes."""
+    try:
+        parsed = parse(f"value = {text}")
+    except ValueError:
+        return text
+    return parsed["value"] if len(parsed) == 1 else text
+
+
+def experiment_from(
+    document: Mapping[str, Any], folder: Path, build: Callable[..., Any] | None = None
+) -> Experiment:
+    """Build the experiment that a file's tables describe; other files are sought in ``folder``.
+
+    ``build`` may take the place of ``build_table``.
+
+    Raises
+    ------
+    ConfigError
+        As ``load_experiment``.
+    """
+    refuse_unless(document, "run")
+    problems: list[str] = []
+    mode = document.get("mode")
+    known = ["mode", *_TABLES, "cantilever", *_OPTIONAL_TABLES]
+    problems += [unknown(key, known, key) for key in document if key not in known]
+    modes = list(schema.MOTIONS)
+    if mode is None:
+        problems.append(f"mode: missing; must be {one_of(modes)}")
+    elif mode not in modes:
+        problems.append(f"mode = {shown(mode)}: {nearest(mode, modes)}")
+
+    tables = [*_TABLES, *(name for name in _OPTIONAL_TABLES if name in document)]
+    if mode not in modes:
+        tables.remove("motion")
+    elif mode in schema.CANTILEVERS:
+        tables.append("cantilever")
+    elif "cantilever" in document:
+        problems.append(
+            f"cantilever: of no use with mode = '{mode}'; leave it out, or use the mode "
+            f"{one_of(list(schema.CANTILEVERS))}"
+        )
+    built: dict[str, Any] = {}
+    for name in tables:
+        try:
+            built[name] = (build or build_table)(name, document, mode, folder)
+        except ConfigError as error:
+            problems += str(error).splitlines()
+    run, solver = built.get("run", schema.Run()), built.get("solver")
+    if solver is not None and not solver.adaptive and "tolerance" in run.model_fields_set:
+        problems.append(
+            f"run.tolerance = {run.tolerance}: the solver '{solver.kind}' takes fixed steps, which "
+            "no tolerance changes; leave it out and use solver.steps"
+        )
+    if run.profiles and mode == "approach-curve":
+        problems.append(
+            "run.profiles = True: of no use with mode = 'approach-curve', which keeps the "
+            "observables of its taps and none of their surfaces; leave it out"
+        )
+    if problems:
+        raise ConfigError(problems)
+    contact = Contact(tip=built["tip"], sample=built["sample"], surface=built["surface"])
+    _refuse_flow(contact, mode, built["motion"], document["motion"])
+    _refuse_run(contact, solver, run, document)
+    if mode != "approach-curve":
+        used = regularised(contact, run.regularise)
+        _refuse_motion(used, built["motion"], solver, document["motion"])
+    return Experiment(
+        mode=str(mode),
+        contact=contact,
+        motion=built["motion"],
+        cantilever=built.get("cantilever"),
+        solver=solver,
+        tolerance=run.tolerance,
+        profiles=run.profiles,
+        check=run.check,
+        regularise=run.regularise,
+        document=document,
+    )
+
+
+def _refuse_run(contact: Contact, solver: Any, run: schema.Run, document: Mapping) -> None:
+    """Raise ConfigError if the run cannot be checked, or the contact not be regularised."""
+    written = document.get("run", {})
+    try:
+        finer_run(run.check, solver, run.tolerance)
+        regularised(contact, run.regularise)
+    except ValueError as error:
+        key = "check" if str(error).startswith("check") else "regularise"
+        reason = str(error).removeprefix("check = True: ")
+        raise ConfigError([f"run.{key} = {shown(written[key])}: {reason}"]) from None
+
+
+def _refuse_flow(contact: Contact, mode: Any, motion: Any, written: dict) -> None:
+    """Raise ConfigError if cycles are to be steady on a sample that flows."""
+    if contact.sample.reduced_compliance.fluidity == 0:
+        return
+    if mode == "approach-curve":
+        raise ConfigError(
+            [
+                f"mode = '{mode}': of no use, as the sample '{contact.sample.kind}' flows and "
+                "the tip sinks deeper with every cycle"
+            ]
+        )
+    if getattr(motion, "steady", False):
+        given = "'steady'" if "cycles" in written else "missing"
+        raise ConfigError(
+            [
+                f"motion.cycles: {given}; must be a number, as the sample '{contact.sample.kind}' "
+                "flows and the tip sinks deeper with every cycle"
+            ]
+        )
+
+
+def _refuse_motion(contact: Contact, motion: Any, solver: Any, written: dict) -> None:
+    """Raise ConfigError if the motion starts inside the surface or the solver cannot follow it."""
+    try:
+        refuse_start_inside(contact, motion)
+    except ValueError as error:
+        key = next(key for key in ("start", "mean_height", "file") if key in written)
+        raise ConfigError([f"motion.{key} = {shown(written[key])}: {error}"]) from None
+    try:
+        refuse_unable(solver, motion)
+    except ValueError as error:
+        raise ConfigError([as_written("motion", written, error) or str(error)]) from None
+
+
+def build_table(name: str, document: Mapping[str, Any], mode: Any, folder: Path) -> Any:
+    """Return the object that a table describes, having made sure that solvers can use it."""
+    if name not in document:
+        raise ConfigError([f"{name}: missing; add a table [{name}]"])
+    written = document[name]
+    if not isinstance(written, dict):
+        raise ConfigError([f"{name} = {shown(written)}: must be a table, [{name}]"])
+    if name == "run":
+        return schema.built(name, written, schema.Run, folder=folder)
+    if name == "cantilever":
+        return schema.built(name, written, schema.CANTILEVERS[mode], folder=folder)
+    if name == "motion":
+        shapes = schema.MOTIONS[mode]
+        default = next(iter(shapes))
+        return schema.chosen(name, written, "shape", shapes, default=default, folder=folder)
+    thing = schema.chosen(name, written, *schema.CHOICES[name], folder=folder)
+    try:
+        # Both are found when first asked for, and may not exist.
+        if name == "sample":
+            _ = thing.reduced_compliance
+        elif name == "surface" and thing.attracts:
+            _ = thing.equilibrium_gap
+    except ValueError as error:
+        key = "window" if name == "sample" else "law"
+        reason = str(error).removeprefix(f"surface law '{thing.kind}': ")
+        raise ConfigError([f"{name}.{key} = {shown(written.get(key))}: {reason}"]) from error
+    return thing

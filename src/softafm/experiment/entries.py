@@ -1,0 +1,222 @@
+"""How values are written in an experiment file: types that read text, units and lists."""
+
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager
+from contextvars import ContextVar
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Annotated, Any, Literal
+
+from pydantic import AfterValidator, BeforeValidator, Field, ValidationInfo
+
+from softafm.checks.refusals import nearest
+from softafm.checks.validate import finite, poisson_ratio, positive, tabor_of, tolerance_of, whole
+from softafm.units import quantities as units
+
+_MOST_ENTRIES = 1000
+_MOST_PIXELS = 4096
+
+
+@dataclass(frozen=True)
+class Input:
+    """What a form needs to know to ask for a value."""
+
+    kind: Literal["quantity", "number", "word", "flag", "choice", "list", "file", "tables"]
+    example: str = ""
+    choices: tuple[str, ...] = ()
+    unit: str = ""
+
+
+def _read(kind: units.Kind) -> BeforeValidator:
+    return BeforeValidator(lambda written: units.read_quantity(written, kind))
+
+
+def _described(read: Callable[..., Any], valid: str, asked: Input) -> tuple[Any, ...]:
+    return BeforeValidator(read), Field(description=valid), asked
+
+
+def _quantity(kind: units.Kind) -> tuple[Any, ...]:
+    asked = Input("quantity", kind.example, unit=kind.si)
+    return _read(kind), Field(description=kind.valid), asked
+
+
+def _quantities(kind: units.Kind) -> tuple[Any, ...]:
+    asked = Input("list", kind.example, unit=kind.si)
+    return _described(_list, f"a list, each {kind.valid}", asked)
+
+
+def _number(written: Any) -> float:
+    if isinstance(written, bool) or not isinstance(written, int | float):
+        raise ValueError("must be a plain number, without quotes or unit")
+    try:
+        return finite("", written, "")
+    except (ValueError, OverflowError):
+        raise ValueError("must be a finite number") from None
+
+
+def refused_as(check: Callable[[float], float]) -> AfterValidator:
+    """Return what refuses a number for the reason that a check gives after its name and value.
+
+    What an object would refuse anyway is so told of all values at once, before it is made.
+    """
+
+    def checked(number: float) -> float:
+        try:
+            return check(number)
+        except ValueError as error:
+            raise ValueError(str(error).partition(": ")[2]) from None
+
+    return AfterValidator(checked)
+
+
+def _cycles(written: Any) -> int | str:
+    if written == "steady":
+        return "steady"
+    try:
+        return whole("cycles", written, 1, 1_000_000)
+    except ValueError:
+        raise ValueError("must be a whole number from 1 to 1000000, or 'steady'") from None
+
+
+def _points(written: Any) -> int:
+    try:
+        return whole("points", written, 2, _MOST_ENTRIES)
+    except ValueError:
+        raise ValueError(f"must be a whole number from 2 to {_MOST_ENTRIES}") from None
+
+
+def _ratio(written: Any) -> float:
+    number = _number(written)
+    if not 0 < number < 1:
+        raise ValueError("must be above 0 and below 1")
+    return number
+
+
+def _whole(written: Any) -> int:
+    if isinstance(written, bool) or not isinstance(written, int) or abs(written) >= 2**63:
+        raise ValueError("must be a whole number, such as 100")
+    return written
+
+
+def _flag(written: Any) -> bool:
+    if not isinstance(written, bool):
+        raise ValueError("must be true or false")
+    return written
+
+
+def choice_of(choices: Mapping[str, Any]) -> Any:
+    """Return the type that reads the name of a choice as what it names."""
+
+    def read(written: Any) -> Any:
+        if not isinstance(written, str) or written not in choices:
+            raise ValueError(nearest(written, list(choices)))
+        return choices[written]
+
+    return Annotated[Any, BeforeValidator(read), Input("choice", choices=tuple(choices))]
+
+
+def _list(written: Any) -> Any:
+    if not isinstance(written, list) or not written:
+        raise ValueError("must be a list, in square brackets, with at least one entry")
+    if len(written) > _MOST_ENTRIES:
+        raise ValueError(f"has {len(written)} entries: must have at most {_MOST_ENTRIES}")
+    return tuple(written)
+
+
+_reading: ContextVar[Callable[[Callable[[Path], Any], Path], Any]] = ContextVar(
+    "reading", default=lambda read, path: read(path)
+)
+
+
+@contextmanager
+def files_read_by(reading: Callable[[Callable[[Path], Any], Path], Any]) -> Iterator[None]:
+    """Have ``reading(read, path)`` called inside for every CSV file in place of ``read(path)``."""
+    before = _reading.set(reading)
+    try:
+        yield
+    finally:
+        _reading.reset(before)
+
+
+def file_of(read: Callable[[Path], Any]) -> tuple[Any, ...]:
+    """Return the marks of a type that reads the name of a CSV file as what the file holds."""
+
+    def held(written: Any, info: ValidationInfo) -> Any:
+        return _reading.get()(read, _file(written, info))
+
+    return _described(held, "the name of a CSV file", Input("file", "approach.csv"))
+
+
+def _file(
+    written: Any, info: ValidationInfo, valid: str = "a CSV file, such as 'approach.csv'"
+) -> Path:
+    if not isinstance(written, str) or not written or "\0" in written:
+        raise ValueError(f"must be the name of {valid}")
+    folder = info.context["folder"] if info.context else Path()
+    return folder / written
+
+
+def _image(written: Any, info: ValidationInfo) -> Path:
+    return _file(written, info, "an image or .npy, such as 'grains.png'")
+
+
+def _pixels(written: Any) -> tuple[int, int]:
+    valid = f"two whole numbers from 1 to {_MOST_PIXELS}, along x and y, such as [128, 128]"
+    try:
+        along_x, along_y = _list(written)
+        return whole("", along_x, 1, _MOST_PIXELS), whole("", along_y, 1, _MOST_PIXELS)
+    except (TypeError, ValueError):
+        raise ValueError(f"must be {valid}") from None
+
+
+def _two(written: Any) -> Any:
+    if not isinstance(written, list) or len(written) != 2:
+        raise ValueError("must be two lengths, along x and y, such as ['500 nm', '500 nm']")
+    return tuple(written)
+
+
+Positive = refused_as(lambda number: positive("", number, ""))
+Length = Annotated[float, *_quantity(units.LENGTH)]
+Time = Annotated[float, *_quantity(units.TIME)]
+Speed = Annotated[float, *_quantity(units.SPEED)]
+Frequency = Annotated[float, *_quantity(units.FREQUENCY)]
+Modulus = Annotated[float, *_quantity(units.MODULUS)]
+Newtons = Annotated[float, *_quantity(units.FORCE)]
+Stiffness = Annotated[float, *_quantity(units.STIFFNESS)]
+Joules = Annotated[float, *_quantity(units.ENERGY)]
+JoulesPerArea = Annotated[float, *_quantity(units.ENERGY_PER_AREA)]
+Pressure = Annotated[float, *_quantity(units.PRESSURE)]
+Angle = Annotated[float, *_quantity(units.ANGLE)]
+Voltage = Annotated[float, *_quantity(units.VOLTAGE)]
+Temperature = Annotated[float, *_quantity(units.TEMPERATURE)]
+Viscosity = Annotated[float, *_quantity(units.VISCOSITY)]
+Concentration = Annotated[float, *_quantity(units.CONCENTRATION)]
+Compliance = Annotated[float, *_quantity(units.COMPLIANCE)]
+Compliances = Annotated[tuple[Compliance, ...], *_quantities(units.COMPLIANCE)]
+Moduli = Annotated[tuple[Modulus, ...], *_quantities(units.MODULUS)]
+Times = Annotated[tuple[Annotated[Time, Positive], ...], *_quantities(units.TIME)]
+Number = Annotated[float, *_described(_number, "a number, such as 0.49", Input("number"))]
+Poisson = Annotated[Number, refused_as(poisson_ratio)]
+Numbers = Annotated[tuple[Number, ...], BeforeValidator(_list), Input("list", "0.5")]
+QualityFactor = Annotated[
+    float, *_described(_number, "a number, such as 430", Input("number", "430"))
+]
+Ratio = Annotated[float, BeforeValidator(_ratio), Input("number", "0.9")]
+Ratios = Annotated[tuple[Ratio, ...], BeforeValidator(_list), Input("list", "0.9")]
+Points = Annotated[int, BeforeValidator(_points), Input("number", "31")]
+Cycles = Annotated[int | Literal["steady"], BeforeValidator(_cycles), Input("word", "steady")]
+Flag = Annotated[bool, BeforeValidator(_flag), Input("flag")]
+Tolerance = Annotated[
+    float, BeforeValidator(_number), refused_as(tolerance_of), Input("number", "0.01")
+]
+Tabor = Annotated[
+    float,
+    BeforeValidator(_number),
+    refused_as(lambda number: tabor_of("regularise", number)),
+    Input("number", "8"),
+]
+Image = Annotated[Path, *_described(_image, "the name of an image", Input("file", "grains.png"))]
+Pixels = Annotated[tuple[int, int], BeforeValidator(_pixels), Input("list", "128")]
+Extent = Annotated[tuple[Length, Length], BeforeValidator(_two), Input("list", "500 nm", unit="m")]
+Whole = Annotated[Any, BeforeValidator(_whole), Input("number", "100")]
+Entries = Annotated[tuple[Any, ...], BeforeValidator(_list), Input("tables")]

@@ -1,0 +1,1 @@
+"""Files of others: tables in text files, and the process that reads what may be damaged."""

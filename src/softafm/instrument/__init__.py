@@ -1,0 +1,1 @@
+"""The instrument: levers, and how the tip or its base moves."""

@@ -1,0 +1,1 @@
+"""Maps: images of samples that vary from place to place."""

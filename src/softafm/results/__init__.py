@@ -1,0 +1,1 @@
+"""Results: datasets with names, units and provenance, and the files that hold them."""

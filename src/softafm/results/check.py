@@ -1,0 +1,164 @@
+"""Whether what a file holds is a result that figures, tables and exports can be made of.
+
+Everything behind ``softafm.load`` relies on what is checked here, and checks none of it again.
+"""
+
+import json
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+
+from softafm.checks.refusals import nearest, one_of, shown
+from softafm.results.content import (
+    BRANCHES,
+    FORMAT,
+    NEEDED,
+    PROFILES,
+    REGULARISED,
+    RISING,
+    SAMPLES,
+    Needed,
+    unit_of,
+)
+
+Variables = Mapping[str, tuple[tuple[str, ...], np.ndarray, Mapping[str, Any]]]
+"""Dimensions, values and attributes by name."""
+
+_LARGEST = {"degree": 360.0}
+_LARGEST_BY_DEFAULT = 1e30
+"""What no quantity exceeds, in its SI unit: sums and squares of such numbers stay finite."""
+_NUMBERS = ("check_largest", "check_tolerance", "check_mean_height", *REGULARISED)
+_TEXTS = ("warnings", "softafm_version", "created")
+
+
+def refuse_unusable(attributes: Mapping[str, Any], variables: Variables) -> None:
+    """Raise ValueError, in one line, if this is no result of softafm, or not a whole one."""
+    if attributes.get("format") != FORMAT:
+        raise ValueError("not a result of softafm (its attribute 'format' says otherwise)")
+    mode = attributes.get("mode")
+    if not isinstance(mode, str) or mode not in NEEDED:
+        raise ValueError(f"attribute mode = {shown(mode)}: {nearest(mode, list(NEEDED))}")
+    needed = NEEDED[mode]
+    _refuse_experiment(mode, needed, attributes)
+    _refuse_attributes(needed, attributes)
+    for name, (dimensions, values, described) in variables.items():
+        _refuse_words(name, described)
+        _refuse_shape(name, dimensions, values, variables)
+    wanted = dict(needed.variables)
+    wanted |= PROFILES if any(name in variables for name in PROFILES) else {}
+    along = {each for dimensions in wanted.values() for each in dimensions if each != "jump"}
+    wanted |= {each: (each,) for each in sorted(along)}
+    for name, dimensions in wanted.items():
+        if name not in variables:
+            raise ValueError(f"variable '{name}' is missing, which a result of mode '{mode}' holds")
+        _refuse_variable(name, dimensions, variables, gaps=needed.gaps and name not in along)
+
+
+def _refuse_experiment(mode: str, needed: Needed, attributes: Mapping[str, Any]) -> None:
+    experiment = _table("experiment", attributes)
+    if experiment.get("mode") != mode:
+        raise ValueError(
+            f"attribute experiment: is one of mode {shown(experiment.get('mode'))}, but the result "
+            f"says mode = {mode!r}"
+        )
+    for part in ("tip", "sample", "surface", needed.described):
+        if not isinstance(experiment.get(part), dict):
+            raise ValueError(f"attribute experiment: does not describe the {part}")
+    if mode == "approach-curve":
+        free = experiment["motion"].get("free_amplitude")
+        if not _is_number(free) or not 0 < free < _LARGEST_BY_DEFAULT:
+            raise ValueError(
+                f"attribute experiment: motion.free_amplitude = {shown(free)}: must be a number in "
+                "m, greater than 0"
+            )
+
+
+def _refuse_attributes(needed: Needed, attributes: Mapping[str, Any]) -> None:
+    required = [*needed.numbers, *(REGULARISED if "regularised_range" in attributes else ())]
+    for name in (*required, *(each for each in _NUMBERS if each in attributes)):
+        value: Any = attributes.get(name)
+        if not _is_number(value) or abs(value) > _LARGEST_BY_DEFAULT:
+            raise ValueError(f"attribute {name} = {shown(value)}: must be a number")
+    for name in _TEXTS:
+        if not isinstance(attributes.get(name, ""), str):
+            raise ValueError(f"attribute {name} = {shown(attributes[name])}: must be text")
+    differences = _table("check_differences", attributes, "{}")
+    if not all(map(_is_number, differences.values())):
+        raise ValueError("attribute check_differences: must hold numbers by name")
+    if not isinstance(_parsed("failures", attributes, "[]"), list):
+        raise ValueError("attribute failures: must be a list, as JSON")
+
+
+def _table(name: str, attributes: Mapping[str, Any], default: str | None = None) -> dict[str, Any]:
+    found = _parsed(name, attributes, default)
+    if not isinstance(found, dict):
+        raise ValueError(f"attribute {name}: must be a table, as JSON")
+    return found
+
+
+def _parsed(name: str, attributes: Mapping[str, Any], default: str | None) -> Any:
+    text = attributes.get(name, default)
+    if text is None:
+        raise ValueError(f"attribute {name}: missing")
+    if not isinstance(text, str):
+        raise ValueError(f"attribute {name} = {shown(text)}: must be text, as JSON")
+    try:
+        return json.loads(text)
+    except (ValueError, RecursionError):
+        raise ValueError(f"attribute {name} = {shown(text)}: cannot be read as JSON") from None
+
+
+def _is_number(value: Any) -> bool:
+    """Whether it is a number; one that is not finite says that a check failed."""
+    return isinstance(value, int | float | np.number) and not isinstance(value, bool)
+
+
+def _refuse_words(name: str, described: Mapping[str, Any]) -> None:
+    for key in ("units", "long_name"):
+        word = described.get(key, "")
+        if not isinstance(word, str) or not word.isprintable():
+            raise ValueError(f"variable '{name}': its {key} = {shown(word)}: must be a word")
+    units, known = described.get("units"), unit_of(name)
+    if known is not None and units != known:
+        raise ValueError(f"variable '{name}' has the unit {shown(units)}: must be {known!r}")
+
+
+def _refuse_shape(name: str, dimensions, values: np.ndarray, variables: Variables) -> None:
+    """Refuse a variable that is as long as no other along one of its dimensions."""
+    for each, length in zip(dimensions, values.shape, strict=True):
+        known = variables[each][1].shape if each in variables else (length,)
+        if known != (length,):
+            raise ValueError(
+                f"variable '{name}' has {length} values along {each}: must have as many as "
+                f"'{each}', {known[0] if known else 'a single number'}"
+            )
+
+
+def _refuse_variable(
+    name: str, dimensions: tuple[str, ...], variables: Variables, *, gaps: bool
+) -> None:
+    """Refuse a variable that a mode needs and has otherwise."""
+    found, values, _ = variables[name]
+    if tuple(found) != dimensions:
+        told = ", ".join(dimensions)
+        raise ValueError(f"variable '{name}' is over ({', '.join(found)}): must be over ({told})")
+    least, most = SAMPLES.get(name, (0, values.size))
+    if not least <= values.size <= most:
+        told = f"must have {least} to {most}"
+        raise ValueError(f"variable '{name}' has {values.size} values: {told}")
+    if name == "branch":
+        if sorted(map(str, values)) != sorted(BRANCHES):
+            raise ValueError(f"variable 'branch' must hold {one_of(BRANCHES)}, each once")
+        return
+    if values.dtype.kind not in "fiu":
+        raise ValueError(f"variable '{name}' holds {shown(values.dtype.name)}: must hold numbers")
+    units = unit_of(name)
+    largest = _LARGEST.get(str(units), _LARGEST_BY_DEFAULT)
+    numbers = values[~np.isnan(values)] if gaps else values
+    wrong = ~(np.abs(numbers) <= largest)
+    if wrong.any():
+        value = numbers[wrong][0]
+        raise ValueError(f"variable '{name}' holds {value:g} {units}: must be within {largest:g}")
+    if name in RISING and not (np.diff(values) > 0).all():
+        raise ValueError(f"variable '{name}' must rise from value to value")

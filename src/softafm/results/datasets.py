@@ -1,0 +1,347 @@
+"""Results as xarray datasets: names, units, provenance, saving, loading, export."""
+
+import inspect
+import json
+import os
+import tempfile
+from collections.abc import Mapping, Sequence
+from dataclasses import fields, is_dataclass
+from datetime import UTC, datetime
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+import softafm
+from softafm.results.content import FORMAT, LARGEST, variable
+from softafm.results.netcdf import file_content
+from softafm.solvers.history import History
+
+if TYPE_CHECKING:
+    from xarray import Dataset, Variable
+
+    from softafm.results.files import Content
+
+
+def _assemble(
+    data: "dict[str, Variable]", coordinates: "dict[str, Variable]", attributes: dict
+) -> "Dataset":
+    """Return the dataset of variables and of coordinates, each along a dimension of its name."""
+    import pandas as pd
+    from xarray import Coordinates, Dataset
+    from xarray.indexes import PandasIndex
+
+    # Made here: xarray would import dask and pint to see whether these are arrays of theirs.
+    indexes = {
+        name: PandasIndex(pd.Index(known.values), name, coord_dtype=known.dtype)
+        for name, known in coordinates.items()
+    }
+    variables: dict[Any, Variable] = {}
+    for name, index in indexes.items():
+        variables |= index.create_variables({name: coordinates[name]})
+    return Dataset(data, Coordinates(variables, indexes), attributes)
+
+
+def describe(thing) -> dict:
+    """Return the kind and the parameters (SI) of a tip, sample, law, motion, solver or stepper."""
+    if is_dataclass(thing):
+        values = {f.name: _described(getattr(thing, f.name)) for f in fields(thing)}
+    else:
+        values = thing.description
+    return {"kind": thing.kind, **values}
+
+
+def _described(value):
+    """Return a parameter as JSON can hold it: of a user's function name and text."""
+    if is_dataclass(value):
+        return describe(value)
+    if isinstance(value, tuple):
+        return [_described(entry) for entry in value]
+    if not callable(value):
+        return value
+    function = getattr(value, "py_func", value)
+    try:
+        source = inspect.getsource(function)
+    except (OSError, TypeError):  # it was not defined in a file
+        source = None
+    return {"name": f"{function.__module__}.{function.__qualname__}", "source": source}
+
+
+def dataset(
+    mode: str,
+    contact,
+    motion,
+    solver,
+    tolerance: float,
+    history: History,
+    observables: dict[str, tuple],
+    cantilever=None,
+) -> "Dataset":
+    """Assemble a result: the history, the mode's observables (dims, values) and the provenance."""
+    curves = ("tip_height", "force", "contact_radius", "axis_deformation", "viscous_power")
+    data = {name: variable(name, "time", getattr(history, name)) for name in curves}
+    for name in ("jump_time", "jump_energy"):
+        data[name] = variable(name, "jump", getattr(history, name))
+    for name, (dims, values) in observables.items():
+        data[name] = variable(name, dims, values)
+    coordinates = {"time": variable("time", "time", history.time)}
+    if history.profiles is not None:
+        shapes = history.profiles
+        gap = history.tip_height[:, None] + contact.tip.profile(shapes.radius) - shapes.deformation
+        coordinates["r"] = variable("r", "r", shapes.radius)
+        data["deformation"] = variable("deformation", ("time", "r"), shapes.deformation)
+        data["gap"] = variable("gap", ("time", "r"), gap)
+        data["pressure"] = variable("pressure", ("time", "r"), contact.surface.pressure(gap))
+    parts = {"motion": motion, **({} if cantilever is None else {"cantilever": cantilever})}
+    attributes = _provenance(
+        mode, contact, parts, solver, tolerance, history.warnings, history.diagnostics
+    )
+    return _assemble(data, coordinates, attributes)
+
+
+def curve_dataset(
+    mode: str, contact, parts: dict, solver, tolerance: float, data, coordinates, warnings,
+    diagnostics,
+) -> "Dataset":  # fmt: skip
+    """Assemble a result that is not a history: variables and coordinates by name as (dims, values).
+
+    ``parts`` are what took part besides the contact, by name: objects, or dictionaries.
+    """
+
+    def known(arrays):
+        return {name: variable(name, dims, values) for name, (dims, values) in arrays.items()}
+
+    attributes = _provenance(mode, contact, parts, solver, tolerance, warnings, diagnostics)
+    return _assemble(known(data), known(coordinates), attributes)
+
+
+def record_regularisation(result: "Dataset", given, contact, tabor: float | None) -> None:
+    """Write into a result that the range of a law was enlarged, and what the law was like before.
+
+    ``given`` is the contact before, ``tabor`` the number that was asked for; None writes nothing.
+    """
+    if tabor is None:
+        return
+    experiment = json.loads(result.attrs["experiment"])
+    experiment["regularise"] = {"tabor": float(tabor), "surface": describe(given.surface)}
+    result.attrs |= {
+        "experiment": json.dumps(experiment),
+        "regularised_tabor": float(tabor),
+        "regularised_range": contact.surface.range,
+        "given_range": given.surface.range,
+        "given_tabor": given.tabor_softened,
+        "edge_slowed": edge_slowed(given, contact.surface.range),
+    }
+
+
+def edge_slowed(given, longer: float) -> float:
+    """Return by what factor the edge of a contact is slower, in cohesive lengths, at a range, m.
+
+    That of an elastic one is none the slower for it, 1: no rate matters there.
+    """
+    creep = given.sample.reduced_compliance
+    rate_matters = creep.modes.size > 0 or creep.fluidity > 0
+    return (longer / given.surface.range) ** 2 if rate_matters else 1.0
+
+
+def misfit_attributes(sample) -> dict[str, float]:
+    """Return how well a sample fits the measured moduli it was fitted to; {} for all others."""
+    if sample.dma_misfit is None:
+        return {}
+    return dict(zip(("dma_misfit_largest", "dma_misfit_rms"), sample.dma_misfit, strict=True))
+
+
+def _provenance(mode, contact, parts, solver, tolerance, warnings, diagnostics) -> dict:
+    """Return the attributes of a result: its whole input, and how it was computed."""
+    things = {"tip": contact.tip, "sample": contact.sample, "surface": contact.surface, **parts}
+    experiment = {
+        name: thing if isinstance(thing, dict) else describe(thing)
+        for name, thing in things.items()
+    }
+    return {
+        "format": FORMAT,
+        "mode": mode,
+        "experiment": json.dumps({"mode": mode, **experiment}),
+        "solver": json.dumps(describe(solver)),
+        **({"tolerance": float(tolerance)} if solver.adaptive else {}),
+        "softafm_version": softafm.__version__,
+        "created": datetime.now(UTC).isoformat(timespec="seconds"),
+        "tabor_instantaneous": contact.tabor_instantaneous,
+        "tabor_relaxed": contact.tabor_relaxed,
+        "cohesive_length": contact.cohesive_length,
+        **misfit_attributes(contact.sample),
+        "warnings": "\n".join(map(str, warnings)),
+        **{f"solver_{name}": value for name, value in diagnostics.items()},
+    }
+
+
+def save(result: "Dataset", path, *, overwrite: bool = False) -> None:
+    """Write a result to a NetCDF-4 file; an existing file is replaced only with ``overwrite``.
+
+    The file appears whole or not at all.
+
+    Raises
+    ------
+    FileExistsError
+        If the path exists and ``overwrite`` is False.
+    OSError
+        If the folder does not exist or cannot be written.
+    """
+    # Formed in memory: on a full disk HDF5 itself may take the process down with it.
+    content = file_content(result)
+    write_whole(path, overwrite, lambda part: Path(part).write_bytes(content))
+
+
+def load(path, *, largest: float = LARGEST) -> "Dataset":
+    """Read a result written by ``save``, whole, and close the file.
+
+    What lies outside the file is never read, even if the file says that it belongs to it.
+
+    Parameters
+    ----------
+    path
+        The file.
+    largest
+        Size that its variables may have in memory, bytes: a small file can stand for a large one.
+
+    Raises
+    ------
+    FileNotFoundError
+        If there is no such file.
+    ValueError
+        If it is not a result of softafm, lacks what its mode needs, or is larger.
+    """
+    from softafm.results.files import read
+
+    if not Path(path).is_file():
+        raise FileNotFoundError(f"{path}: no such file")
+    try:
+        return result_of(*read(str(path), int(largest)))
+    except ValueError as problem:
+        raise ValueError(f"{path}: {problem}") from None
+
+
+def load_apart(path, *, largest: float = LARGEST, seconds: float | None = None) -> "Dataset":
+    """Read a result of someone else, as ``load`` does, in a process of its own.
+
+    A damaged file that makes the reading go on for ever, or end its process, harms no one then.
+
+    Parameters
+    ----------
+    path, largest
+        As for ``load``.
+    seconds
+        Time after which the reading is ended, s; by default ``softafm.files.guard.seconds_for``.
+
+    Raises
+    ------
+    FileNotFoundError, ValueError
+        As ``load``, and ValueError if the file cannot be read in that time.
+    """
+    from softafm.files.guard import read_apart, seconds_for
+
+    if not Path(path).is_file():
+        raise FileNotFoundError(f"{path}: no such file")
+    try:
+        found = read_apart(
+            "softafm.results.files:read",
+            str(path),
+            int(largest),
+            seconds=seconds_for(path) if seconds is None else seconds,
+            largest=int(largest),
+        )
+        return result_of(*found)
+    except ValueError as problem:
+        raise ValueError(f"{path}: {problem}") from None
+
+
+def result_of(content: "Content", arrays: Sequence[np.ndarray]) -> "Dataset":
+    """Return the result that ``softafm.results.files.read`` found in a file.
+
+    Raises
+    ------
+    ValueError
+        If it is none, or lacks what its mode needs.
+    """
+    from xarray import Dataset
+
+    from softafm.results.check import refuse_unusable
+
+    attributes, described, coordinates = content
+    variables = {
+        name: (tuple(dimensions), values, attrs)
+        for (name, dimensions, attrs), values in zip(described, arrays, strict=True)
+    }
+    refuse_unusable(attributes, variables)
+    made = {name: (*parts, _as_saved(attrs)) for name, (*parts, attrs) in variables.items()}
+    return Dataset(made, attrs=_as_saved(attributes)).set_coords(coordinates)
+
+
+def _as_saved(attributes: Mapping[str, Any]) -> dict:
+    """Return attributes as NumPy's numbers and arrays of numbers, as xarray reads them."""
+    return {
+        name: value if isinstance(value, str) or _holds_text(value) else np.array(value)[()]
+        for name, value in attributes.items()
+    }
+
+
+def _holds_text(value) -> bool:
+    return isinstance(value, list) and any(isinstance(each, str) for each in value)
+
+
+def export(result: "Dataset", path, *, overwrite: bool = False) -> None:
+    """Write the curves over time to CSV, or the whole result to HDF5, by the path's suffix.
+
+    CSV columns are named ``name (unit)``; the scalars stand above them as comments. Of an approach
+    curve they are those of the sweep, over ``sweep_height``; its branches are in the HDF5 only.
+
+    Raises
+    ------
+    ValueError
+        If the suffix is neither .csv nor .h5, or .csv for a map.
+    FileExistsError, OSError
+        As ``save``.
+    """
+    suffix = Path(path).suffix.lower()
+    if suffix == ".h5":
+        save(result, path, overwrite=overwrite)
+    elif suffix == ".csv":
+        if {"x", "y"} <= set(result.dims):
+            raise ValueError(f"{path}: maps have no CSV; take .h5, or export_gwyddion")
+        write_whole(path, overwrite, lambda part: _write_csv(result, part))
+    else:
+        raise ValueError(f"{path}: suffix {suffix!r} is not known, must be .csv or .h5")
+
+
+def _write_csv(result, path):
+    along = "time" if "time" in result.dims else "sweep_height"
+    numbers = [v for v in result.data_vars.values() if v.dtype.kind in "fiub"]
+    curves = [result[along]] + [v for v in numbers if v.dims == (along,)]
+    scalars = [v for v in numbers if v.dims == ()]
+    header = [f"{v.name} = {float(v):.9g} {v.units}" for v in scalars]
+    header += [f"experiment = {result.attrs['experiment']}"]
+    names = ",".join(f"{v.name} ({v.units})" for v in curves)
+    # To the last digit: steps of a fall may be closer than nine digits tell apart.
+    rows = np.column_stack(curves).tolist()
+    with open(path, "w", encoding="utf-8") as out:
+        out.writelines(f"# {line}\n" for line in header)
+        out.write(f"{names}\n")
+        out.writelines(",".join(map(repr, row)) + "\n" for row in rows)
+
+
+def write_whole(path, overwrite, write):
+    """Let ``write`` fill a temporary file beside ``path``, then give it its name."""
+    path = Path(path)
+    if os.path.lexists(path) and not overwrite:  # a dangling link is somebody's, too
+        raise FileExistsError(f"{path}: exists already")
+    handle, part = tempfile.mkstemp(prefix=f".{path.name}.", suffix=".part", dir=path.parent)
+    os.close(handle)
+    try:
+        write(part)
+        mask = os.umask(0)
+        os.umask(mask)
+        os.chmod(part, 0o666 & ~mask)
+        os.replace(part, path)
+    except BaseException:
+        os.unlink(part)
+        raise

@@ -1,0 +1,1 @@
+"""The paper's solvers, setups A to G."""

@@ -1,0 +1,373 @@
+"""A campaign: many runs of one kind, what varies between them and what each gives."""
+
+import hashlib
+import inspect
+import json
+import warnings
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from functools import lru_cache
+from itertools import product
+from math import prod
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+import softafm
+from softafm.checks.refusals import ConfigError, nearest, shown
+from softafm.contact import Contact
+from softafm.errors import AccuracyWarning
+from softafm.experiment.config import build_table, experiment_from
+from softafm.experiment.fields import Keys, keys_of, replaced
+from softafm.results.content import VARIABLES
+from softafm.sweeps.designs import Design
+
+Coordinate = tuple[tuple[str, ...], np.ndarray, Mapping[str, str]]
+"""Dimensions, values and attributes."""
+
+_TAP = (
+    "virial", "dissipation", "force_max", "force_min", "force_min_approach", "force_mean",
+    "contact_time", "indentation", "viscous_loss", "cycles_run",
+)  # fmt: skip
+_CURVE = ("force_max", "force_min", "force_min_approach", "loop_energy", "viscous_loss")
+_SWEEP = (
+    "mean_height", "phase", "virial", "dissipation", "force_mean", "force_max", "force_min",
+    "contact_time", "indentation",
+)  # fmt: skip
+OBSERVABLES = {
+    "force-distance": _CURVE,
+    "force-spectroscopy": _CURVE,
+    "tapping-cycle": _TAP,
+    "approach-curve": _SWEEP,
+}
+"""What a run of each mode gives; that of an approach curve over branch and amplitude ratio."""
+_OVER_RATIOS = ("amplitude_ratio", "first_ratio", "last_ratio", "points")
+_TRIED = 200
+"""Values of a parameter, or samples, for which an experiment is built before anything starts."""
+
+
+@dataclass(frozen=True)
+class Observable:
+    """A number that every run gives, or an array of them over further dimensions."""
+
+    name: str
+    unit: str = "1"
+    long_name: str = ""
+    dimensions: tuple[str, ...] = ()
+    shape: tuple[int, ...] = ()
+
+
+@dataclass(frozen=True)
+class Campaign:
+    """Runs over the points of one or more dimensions.
+
+    Attributes
+    ----------
+    dimensions, shape
+        Names and sizes of what varies.
+    coordinates
+        By name; over these dimensions, or over further ones of the observables.
+    observables
+        What every run gives.
+    point
+        Returns what a run is to know, picklable, of an index along each dimension. It is called
+        where the campaign was started.
+    run
+        Turns a point into the values of the observables by name; picklable, as it is called in
+        other processes. What it raises is recorded as the reason why the run failed.
+    identity
+        What makes it this campaign and no other, as JSON can hold it: a store is resumed only by
+        the campaign that began it.
+    seconds
+        Expected duration of a run, s.
+    """
+
+    dimensions: tuple[str, ...]
+    shape: tuple[int, ...]
+    coordinates: Mapping[str, Coordinate]
+    observables: tuple[Observable, ...]
+    point: Callable[[tuple[int, ...]], Any]
+    run: Callable[[Any], Mapping[str, Any]]
+    identity: Mapping[str, Any]
+    seconds: float | None = None
+
+    @property
+    def size(self) -> int:
+        """The number of runs."""
+        return prod(self.shape)
+
+    def points(self, block: Sequence[range]) -> list[Any]:
+        """Return the points of a block, in C order."""
+        return [self.point(index) for index in product(*block)]
+
+
+# Experiments
+
+
+@dataclass(frozen=True)
+class RunExperiment:
+    """Runs the experiment that a document becomes with some of its values replaced."""
+
+    document: Mapping[str, Any]
+    folder: Path
+    names: tuple[str, ...]
+
+    def __call__(self, values: Mapping[str, Any]) -> dict[str, Any]:
+        experiment = self.experiment(values)
+        kept = _kept(experiment.contact)
+        found = replace(experiment, contact=kept).observables()
+        return {name: found[name] for name in self.names}
+
+    def experiment(self, values: Mapping[str, Any]):
+        """Return the experiment of a run; ConfigError if there is none."""
+        document = self.document
+        for path, value in values.items():
+            document = replaced(document, _keys(path), value)
+        return experiment_from(document, self.folder, _kept_table)
+
+
+@lru_cache(maxsize=1024)
+def _keys(path: str) -> Keys:
+    return keys_of(path)
+
+
+def _kept(contact: Contact) -> Contact:
+    """Return an equal contact that has worked out its scales already, if one is at hand."""
+    try:
+        return _contact(contact.tip, contact.sample, contact.surface)
+    except TypeError:  # a part that cannot be hashed
+        return contact
+
+
+def _kept_table(name: str, document: Mapping[str, Any], mode: Any, folder: Path) -> Any:
+    """Return what a table describes, the same object for equal tables; it warns each time."""
+    thing, told = _table(name, json.dumps(document.get(name)), mode, folder)
+    for text in told:
+        warnings.warn(text, AccuracyWarning, stacklevel=2)
+    return thing
+
+
+@lru_cache(maxsize=256)
+def _table(name: str, written: str, mode: Any, folder: Path) -> tuple[Any, tuple[str, ...]]:
+    content = json.loads(written)
+    with warnings.catch_warnings(record=True) as told:
+        warnings.simplefilter("always", AccuracyWarning)
+        thing = build_table(name, {} if content is None else {name: content}, mode, folder)
+    return thing, tuple(str(warning.message) for warning in told)
+
+
+@lru_cache(maxsize=64)
+def _contact(tip: Any, sample: Any, surface: Any) -> Contact:
+    return Contact(tip, sample, surface)
+
+
+def experiment_campaign(
+    document: Mapping[str, Any], folder: Path, design: Design, names: Sequence[str] | None
+) -> Campaign:
+    """Return the campaign of an experiment's document, having tried it.
+
+    Raises
+    ------
+    ConfigError
+        If the document is no experiment with any of the values tried, if a value suits no
+        experiment tried, or an observable is not one of the mode's.
+    """
+    from softafm.experiment.regime import expected_seconds
+
+    mode = document["mode"]
+    observed = tuple(OBSERVABLES[mode] if names is None else names)
+    _refuse_unknown(observed, OBSERVABLES[mode])
+    run = RunExperiment(document, folder, observed)
+    tried = _tried(run, design)
+    costs = [expected_seconds(experiment) for experiment in tried[:: max(1, len(tried) // 20)]]
+    coordinates: dict[str, Coordinate] = dict(design.coordinates)
+    dimensions: tuple[str, ...] = ()
+    shape: tuple[int, ...] = ()
+    if mode == "approach-curve":
+        _refuse_ratios(design)
+        ratios = np.array(tried[0].motion.amplitude_ratio)
+        branches = np.array(("attractive", "unstable", "repulsive"))
+        dimensions, shape = ("branch", "amplitude_ratio"), (branches.size, ratios.size)
+        for name, values in zip(dimensions, (branches, ratios), strict=True):
+            units, long_name = VARIABLES[name]
+            coordinates[name] = ((name,), values, {"units": units, "long_name": long_name})
+    return Campaign(
+        dimensions=design.dimensions,
+        shape=design.shape,
+        coordinates=coordinates,
+        observables=tuple(Observable(n, *VARIABLES[n], dimensions, shape) for n in observed),
+        point=design.written_at,
+        run=run,
+        identity={
+            "experiment": document,
+            "files": _digests(document, folder),
+            "observables": list(observed),
+            "softafm_version": softafm.__version__,
+        },
+        seconds=float(np.mean(costs)),
+    )
+
+
+def _refuse_unknown(observed: Sequence[Any], known: Sequence[str]) -> None:
+    if not observed:
+        raise ConfigError(["sweep.observables = []: is empty; leave it out for all of them"])
+    for name in observed:
+        if not isinstance(name, str) or name not in known:
+            raise ConfigError([f"sweep.observables = {shown(name)}: {nearest(name, known)}"])
+        if list(observed).count(name) > 1:
+            raise ConfigError([f"sweep.observables: '{name}' is there twice; leave one out"])
+
+
+def _refuse_ratios(design: Design) -> None:
+    for parameter in design.parameters:
+        path = parameter.field.path
+        if path in (f"motion.{key}" for key in _OVER_RATIOS):
+            raise ConfigError(
+                [
+                    f"sweep.vary.'{path}': the results of an approach curve lie over its amplitude "
+                    "ratios already; list them in [motion] and vary something else"
+                ]
+            )
+
+
+def _tried(run: RunExperiment, design: Design) -> list[Any]:
+    """Return experiments that could be built, with every value of every parameter if few.
+
+    A value may suit some values of the other parameters and not others; only one that suits none
+    of those tried is refused, with what the first try said.
+    """
+    shape, sampled = design.shape, design.dimensions == ("sample",)
+    anchors = [tuple(int(part * (n - 1)) for n in shape) for part in (0, 1, 0.5)]
+    built = {}
+    for axis, size in enumerate(shape):
+        failures = []
+        for i in np.unique(np.linspace(0, size - 1, min(size, _TRIED)).astype(int)):
+            refusals: list[ConfigError] = []
+            for anchor in anchors:
+                index = (*anchor[:axis], int(i), *anchor[axis + 1 :])
+                try:
+                    if index not in built:
+                        built[index] = run.experiment(design.written_at(index))
+                    break
+                except ConfigError as error:
+                    refusals.append(error)
+            else:
+                failures.append(refusals[0])
+            # Of a sample some may be out of range, and are recorded as failed.
+            if failures and not sampled:
+                raise failures[0]
+        if not built:
+            raise failures[0]
+    return list(built.values())
+
+
+def _digests(document: Any, folder: Path) -> dict[str, str]:
+    """Return the SHA-256 of the files that a document names, by name."""
+    if isinstance(document, list):
+        return {name: d for entry in document for name, d in _digests(entry, folder).items()}
+    found: dict[str, str] = {}
+    for key, value in document.items() if isinstance(document, Mapping) else ():
+        if key == "file" and isinstance(value, str) and (folder / value).is_file():
+            found[value] = hashlib.sha256((folder / value).read_bytes()).hexdigest()
+        else:
+            found |= _digests(value, folder)
+    return found
+
+
+# Python functions
+
+
+@dataclass(frozen=True)
+class RunFunction:
+    """Calls a function with the values of a run by name, and takes the scalars of what it gives."""
+
+    function: Callable[..., Any]
+
+    def __call__(self, values: Mapping[str, Any]) -> dict[str, Any]:
+        return {name: value for name, (value, _) in self.scalars(values).items()}
+
+    def scalars(self, values: Mapping[str, Any]) -> dict[str, tuple[float, Mapping[str, str]]]:
+        """Return every scalar, with the attributes it has in a dataset."""
+        given = self.function(**values)
+        if not isinstance(given, Mapping):
+            raise TypeError(
+                f"gives {shown(given)}: must be a mapping of names to numbers, or a dataset"
+            )
+        found = {}
+        for name, value in (getattr(given, "data_vars", None) or given).items():
+            number = np.asarray(value)
+            if number.ndim == 0 and number.dtype.kind in "fiub":
+                found[str(name)] = (float(number), getattr(value, "attrs", {}))
+        return found
+
+
+def function_campaign(
+    function: Callable[..., Any], design: Design, names: Sequence[str] | None
+) -> Campaign:
+    """Return the campaign of a function, having called it once.
+
+    Raises
+    ------
+    ConfigError
+        If it does not take the parameters, the call fails, or gives no such observables.
+    """
+    from time import perf_counter
+
+    name = getattr(function, "__name__", type(function).__name__)
+    run, first = RunFunction(function), design.at((0,) * len(design.shape))
+    try:
+        inspect.signature(function).bind(**first)
+    except TypeError as error:
+        raise ConfigError([f"sweep.vary: {name} cannot be called with it: {error}"]) from None
+    except ValueError:  # it has no signature to be known
+        pass
+    started = perf_counter()
+    try:
+        scalars = run.scalars(first)
+    except Exception as error:
+        reason = " ".join(f"{type(error).__name__}: {error}".split())
+        raise ConfigError(
+            [f"sweep: the first run, of {name} with {_told(first)}, failed: {reason}"]
+        ) from error
+    seconds = perf_counter() - started
+    observed = tuple(scalars if names is None else names)
+    if not scalars:
+        raise ConfigError([f"sweep: the function {name} gives no numbers; return some by name"])
+    _refuse_unknown(observed, list(scalars))
+    for taken in design.names.values():
+        if taken in observed:
+            raise ConfigError(
+                [f"sweep.observables: '{taken}' is what varies, too; give it another name"]
+            )
+    return Campaign(
+        dimensions=design.dimensions,
+        shape=design.shape,
+        coordinates=design.coordinates,
+        observables=tuple(_observable(n, scalars[n][1]) for n in observed),
+        point=design.at,
+        run=run,
+        identity={
+            "function": f"{getattr(function, '__module__', '')}.{name}",
+            "source": _source(function),
+            "observables": list(observed),
+            "softafm_version": softafm.__version__,
+        },
+        seconds=seconds,
+    )
+
+
+def _observable(name: str, attributes: Mapping[str, str]) -> Observable:
+    unit, long_name = (str(attributes.get(key, "")) for key in ("units", "long_name"))
+    return Observable(name, unit, long_name)
+
+
+def _told(values: Mapping[str, Any]) -> str:
+    return ", ".join(f"{name} = {shown(value)}" for name, value in values.items())
+
+
+def _source(function: Any) -> str | None:
+    try:
+        return inspect.getsource(getattr(function, "py_func", function))
+    except (OSError, TypeError):  # it was not defined in a file
+        return None
