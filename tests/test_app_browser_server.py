@@ -86,7 +86,7 @@ def test_what_is_too_much_is_refused_with_a_reason(site, visit, tmp_path):
         ("odd.nc", b"<img src=x>", "odd.nc: not a NetCDF file that softafm wrote"),
         ("odd.nc", large.read_bytes()[:5000], "odd.nc: not a readable NetCDF file"),
         ("odd.toml", b"\xff\xfe\x00", "odd.toml: neither a result (.nc) nor text"),
-        ("odd.toml", b"mode = <img src=x>", "odd.toml"),
+        ("odd.toml", b"mode = <img src=x>", "odd.toml: is not valid TOML"),
     ):
         page.locator("input.open").set_input_files(
             {"name": name, "mimeType": "application/octet-stream", "buffer": content}

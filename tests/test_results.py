@@ -270,7 +270,7 @@ def test_saved_files_are_as_xarray_writes_them(results, name, tmp_path):
 
 def test_what_a_user_adds_is_saved(result, tmp_path):
     added = result.assign(
-        count=("jump", [3] * result.sizes["jump"]),
+        count=("time", np.arange(result.sizes["time"])),
         seen=("time", result["force"].values > 0),
         offset=result["force"].astype("f4"),
     ).assign_coords(stage=("time", np.linspace(0, 1, result.sizes["time"])), place=3.0)
