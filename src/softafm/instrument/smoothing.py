@@ -203,6 +203,8 @@ def _join(curves: "list[BSpline]", bounds: np.ndarray) -> tuple[np.ndarray, np.n
         between = np.unique(curve.t)
         x = np.concatenate([[start], between[(between > start) & (between < end)]])
         height = curve(x) - missed[i] + tilt * (x - start)
+        # A line's own derivatives end at the first; SciPy 1.15.0 dies when it is asked for more.
+        third, second = (curve(x, n) if n <= curve.k else np.zeros(x.size) for n in (3, 2))
         knots.append(x)
-        cubics.append([curve(x, 3) / 6, curve(x, 2) / 2, curve(x, 1) + tilt, height])
+        cubics.append([third / 6, second / 2, curve(x, 1) + tilt, height])
     return np.concatenate([*knots, bounds[-1:]]), np.concatenate(cubics, axis=1)
