@@ -6,8 +6,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from softafm.draw import approach_data
-from softafm.draw import histories
+from softafm.draw import approach_data, histories
 from softafm.draw.approach_data import DIRECTIONS, Curves
 
 if TYPE_CHECKING:

@@ -203,7 +203,7 @@ def _join(curves: "list[BSpline]", bounds: np.ndarray) -> tuple[np.ndarray, np.n
         between = np.unique(curve.t)
         x = np.concatenate([[start], between[(between > start) & (between < end)]])
         height = curve(x) - missed[i] + tilt * (x - start)
-        # A line's own derivatives end at the first; SciPy 1.15.0 dies when it is asked for more.
+        # The derivatives of a line end at the first.
         third, second = (curve(x, n) if n <= curve.k else np.zeros(x.size) for n in (3, 2))
         knots.append(x)
         cubics.append([third / 6, second / 2, curve(x, 1) + tilt, height])
