@@ -103,6 +103,15 @@ def test_what_can_be_read_in_one_way_only_is_read(read, content):
         ("time (us),height (nm)\n0,1 # first\n", "'height' must be a finite number"),
         ("time (us),height (nm)\n\"0,1\n1,2\n", "is not a CSV file: "),
         ("time (us),height (nm)\n0,\"1\n\"\n", "is not a CSV file: a quoted field goes over sev"),
+        ("time (us)   height (nm)   force (nN)\n0 1 2\n5            3.0\n", "line 3 ('5            "
+         "3.0') has 2 fields, but the header, line 1, names 3: columns are separated by blanks, so "
+         "no field may be empty or hold a blank"),
+        ("time (us) height (nm) force (nN) note\n1 000 1\n", "line 2 ('1 000 1') has 3 fields"),
+        ("time (us) height (nm)\n1 000 1\n", "line 2 ('1 000 1') has 3 fields"),
+        ("time height force\nus nm\n0 1 2\n", "line 2 ('us nm') has 2 fields"),
+        ('time (us),height (nm),drive (V)\n0,"1,250","1,5"\n1,"980","2"\n2,"1,100","3"\n',
+         "line 2: the comma of 1,250 may be a decimal one or separate thousands, 1.250 or 1250, as "
+         "everywhere in column 'height (nm)': write decimals with points"),
         ("\n# nothing\n\n", f"is empty; its header must read, for example, '{EXAMPLE}'"),
     ],
 )  # fmt: skip
@@ -113,6 +122,31 @@ def test_what_could_be_read_in_two_ways_is_refused(read, content, reason):
 def test_a_tab_before_the_first_title_is_an_empty_title(read):
     time, height = read("\ttime (us)\theight (nm)\n7\t0\t1\n8\t1\t2\n")
     np.testing.assert_allclose([time, height], [[0, 1e-6], [1e-9, 2e-9]], rtol=1e-14)
+
+
+@pytest.mark.parametrize(
+    "rows", ["1,1,approach\n2,6,approach\n", "1,1,m\n2,6,s\n", "1,1,\n2,6,nm\n"]
+)
+def test_a_first_row_of_ones_and_words_is_data(read, rows):
+    time, height = read(f"time (ms),height (nm),segment\n{rows}")
+    np.testing.assert_allclose([time, height], [[1e-3, 2e-3], [1e-9, 6e-9]], rtol=1e-14)
+
+
+def test_a_first_frequency_of_1_hz_beside_a_remark_is_kept(write):
+    rows = "1,1,1,low torque\n10,2,1,\n100,3,1,\n"
+    path = write(f"frequency (Hz),storage (MPa),loss (MPa),remark\n{rows}")
+    assert sa.read_dma(path)[0].tolist() == [1.0, 10.0, 100.0]
+
+
+@pytest.mark.parametrize("row", [",,approach", "-,-,m", "1,nm,"])
+def test_a_row_without_numbers_is_no_row_of_units_where_the_header_has_them(read, row):
+    message = refusal(read, f"time (ms),height (nm),segment\n{row}\n1,1,a\n")
+    assert message.startswith(f"line 2 ({row!r})")
+
+
+def test_a_one_is_no_unit_of_what_has_a_dimension(read):
+    message = refusal(read, "time,height,note\n1,nm,m\n2,6,\n")
+    assert message == "column 'time' must name a unit of a time, not '1'"
 
 
 def test_one_clear_decimal_comma_settles_what_the_others_are(read):

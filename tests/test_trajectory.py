@@ -198,6 +198,72 @@ def test_noise_may_be_stated():
     assert np.abs(stated.height(time) - np.interp(time, [0, 0.5, 1], [1e-8, 0, 1e-8])).max() < 2e-10
 
 
+SECOND = np.linspace(0, 1, 4000)
+PECKED = np.interp(SECOND, [0, 0.5, 1], [1e-8, -5e-9, 1e-8])
+
+
+def correlated(kind, seed, samples=4000):
+    """Return noise in which neighbours are alike, m: 50 periods of hum, or means of 20 samples."""
+    rng = np.random.default_rng(seed)
+    if kind == "hum":
+        hum = np.sin(np.linspace(0, 100 * np.pi, samples) + seed)
+        return 0.3e-9 * hum + 0.1e-9 * rng.standard_normal(samples)
+    white = rng.standard_normal(samples + 19)
+    return 0.3e-9 * np.convolve(white, np.ones(20) / 20**0.5, mode="valid")
+
+
+@pytest.mark.parametrize("stated", [False, True])
+@pytest.mark.parametrize("kind", ["hum", "filter"])
+def test_correlated_noise_is_not_taken_for_corners(kind, stated):
+    for seed in range(2):
+        noise = correlated(kind, seed)
+        size = float(noise.std())
+        path = sa.Trajectory.from_measurement(SECOND, PECKED + noise, size if stated else None)
+        # Twenty samples of a mean count once: a line through 100 such errs at its ends by
+        # 2 noise/√100, and by three times that once in hundreds of records.
+        assert path.corners == pytest.approx([0.5], abs=0.02)
+        missed = np.abs(path.height(SECOND) - PECKED).max()
+        assert missed < 3 * 2 * 0.3e-9 / np.sqrt(100)
+        # What neighbours tell is not all of the noise; what was stated is.
+        assert len(path.doubts) == (not stated)
+        for doubt in path.doubts:
+            assert f"state noise = {np.std(path.height(SECOND) - path.heights):.2g} m" in doubt
+
+
+def test_hum_of_many_samples_that_passes_for_motion_is_doubtful():
+    time = np.linspace(0, 1, 20_000)
+    clean = np.interp(time, [0, 0.5, 1], [1e-8, -5e-9, 1e-8])
+    rng = np.random.default_rng(0)
+    hum = 0.3e-9 * np.sin(100 * np.pi * time) + 0.1e-9 * rng.standard_normal(time.size)
+    (doubt,) = sa.Trajectory.from_measurement(time, clean + hum).doubts
+    assert "as one that follows hum: if there is hum, state the noise with that in it" in doubt
+    stated = sa.Trajectory.from_measurement(time, clean + hum, noise=float(hum.std()))
+    assert stated.doubts == ()
+    assert stated.corners == pytest.approx([0.5], abs=0.005)
+
+
+@pytest.mark.parametrize("samples", [40, 400, 4000])
+def test_noise_stated_far_too_large_is_doubtful(samples):
+    ramp = sa.Triangle(10e-9, -5e-9, 1e-6)
+    time, heights = record(ramp, samples, 0.2e-9)
+    path = sa.Trajectory.from_measurement(time, heights, noise=5e-9)
+    assert path.height(time).min() > -4e-9  # it is flattened
+    misfit = np.sqrt(np.mean((path.height(time) - heights) ** 2))
+    (doubt,) = path.doubts
+    assert "noise is taken to be 5e-09 m: so large a noise hides motion" in doubt
+    assert doubt.endswith(f"state one of about {misfit:.2g} m, or none")
+    assert sa.Trajectory.from_measurement(time, heights, noise=0.2e-9).doubts == ()
+
+
+def test_fast_waves_are_no_noise():
+    for cycles in (30, 100):
+        wave = 8e-9 * np.sin(2 * np.pi * cycles * SECOND)
+        noise = 1e-10 * np.random.default_rng(cycles).standard_normal(4000)
+        path = sa.Trajectory.from_measurement(SECOND, wave + noise)
+        assert np.std(path.height(SECOND) - wave) < 1e-10
+        assert path.doubts == ()
+
+
 @given(
     st.integers(0, 2**32 - 1),
     st.integers(20, 300),
@@ -257,7 +323,17 @@ def test_a_record_that_its_path_leaves_is_doubtful():
     time, heights = record(RAMP, 300, 0.1e-9)
     heights[50::60] += 1e-7
     (doubt,) = sa.Trajectory.from_measurement(time, heights, noise=0.1e-9).doubts
-    assert "remove samples that are outliers" in doubt
+    assert "remove outliers, or give steps by their corners to Trajectory" in doubt
+
+
+def test_what_is_said_of_steps_is_true_of_them():
+    rng = np.random.default_rng(1)
+    steps = 5e-9 * ((SECOND > 0.3) + 1.0 * (SECOND > 0.6)) + 1e-10 * rng.standard_normal(4000)
+    (doubt,) = sa.Trajectory.from_measurement(SECOND, steps).doubts
+    assert "remove outliers, or give steps by their corners to Trajectory" in doubt
+    corners = [0, 0.3, 0.30025, 0.6, 0.60025, 1]
+    given_so = sa.Trajectory(corners, np.array([0, 0, 5, 5, 10, 10]) * 1e-9)
+    assert np.std(given_so.height(SECOND) - steps) < 1.2e-10
 
 
 def test_results_keep_how_a_path_was_drawn(clean):
@@ -265,7 +341,7 @@ def test_results_keep_how_a_path_was_drawn(clean):
     for motion, kept in (
         (sa.Trajectory(time, heights), {"smooth": False}),
         (sa.Trajectory(time, heights, smooth=True), {"smooth": True}),
-        (sa.Trajectory.from_measurement(time, heights, noise=2e-12), {"noise": 2e-12}),
+        (sa.Trajectory.from_measurement(time, heights, noise=1e-12), {"noise": 1e-12}),
     ):
         found = sa.force_distance(CONTACT, motion, tolerance=0.1)
         described = json.loads(found.attrs["experiment"])["motion"]

@@ -14,7 +14,7 @@ from pathlib import Path
 
 import numpy as np
 
-from softafm.units.quantities import LARGEST, Kind, read_quantity
+from softafm.units.quantities import LARGEST, Kind, is_unit, read_quantity
 
 LARGEST_FILE = 100_000_000
 _LONGEST_SHOWN = 60
@@ -51,8 +51,8 @@ class Table:
     Raises
     ------
     ValueError
-        If the file cannot be read, has no header, or has rows with more fields than the header.
-        Lines are counted as an editor does.
+        If the file cannot be read, has no header, or has rows with more fields than the header, or
+        fewer where blanks separate them. Lines are counted as an editor does.
     """
 
     def __init__(self, path: str | Path, example: str):
@@ -75,8 +75,9 @@ class Table:
             del titles[-1]
         self._rows = list(zip(data, self._split(self._text_of(data), data), strict=True))
         for number, cells in self._rows:
-            if any(cells[len(titles) :]):
-                raise ValueError(self._too_wide(number, cells, len(titles)))
+            between_blanks = self.separator == " " and len(cells) != len(titles)
+            if between_blanks or any(cells[len(titles) :]):
+                raise ValueError(self._wrong_width(number, cells, len(titles)))
         self.columns = self._named(titles)
 
     def find(self, *names: str) -> Column | None:
@@ -135,7 +136,7 @@ class Table:
         cells = [(n, cells[column.index] if column.index < len(cells) else "")
                  for n, cells in self._rows]  # fmt: skip
         if any("," in cell for _, cell in cells):
-            self._require_decimal_commas()
+            self._require_decimal_commas(column)
             cells = [(n, cell.replace(",", ".") if _WITH_COMMA.fullmatch(cell) else cell)
                      for n, cell in cells]  # fmt: skip
         return np.array([self._number(n, cell, column) for n, cell in cells], float)
@@ -156,20 +157,23 @@ class Table:
             f"{shown(cell)}"
         )
 
-    def _require_decimal_commas(self):
-        """Raise ValueError if commas within fields need not be decimal ones."""
-        every = [(n, cell) for n, cells in self._rows for cell in cells]
-        commas = [(n, cell) for n, cell in every if _WITH_COMMA.fullmatch(cell)]
-        points = [(n, cell) for n, cell in every if "." in cell and _NUMBER.fullmatch(cell)]
+    def _require_decimal_commas(self, column: Column):
+        """Raise ValueError if commas within fields of a column need not be decimal ones."""
+        every = [(n, i, cell) for n, cells in self._rows for i, cell in enumerate(cells)]
+        commas = [entry for entry in every if _WITH_COMMA.fullmatch(entry[2])]
+        points = [(n, cell) for n, _, cell in every if "." in cell and _NUMBER.fullmatch(cell)]
         if commas and points:
             raise ValueError(
                 f"line {points[0][0]} has a decimal point, in {shown(points[0][1])}, and line "
-                f"{commas[0][0]} a comma, in {shown(commas[0][1])}: write all decimals with points"
+                f"{commas[0][0]} a comma, in {shown(commas[0][2])}: write all decimals with points"
             )
-        if commas and all(_THOUSANDS.fullmatch(cell) for _, cell in commas):
+        here = [(n, cell) for n, i, cell in commas if i == column.index]
+        if here and all(_THOUSANDS.fullmatch(cell) for _, cell in here):
+            line, cell = here[0]
             raise ValueError(
-                f"line {commas[0][0]}: the comma of {commas[0][1]} may be a decimal one or "
-                "separate thousands, here as everywhere in the file: write decimals with points"
+                f"line {line}: the comma of {cell} may be a decimal one or separate thousands, "
+                f"{cell.replace(',', '.')} or {cell.replace(',', '')}, as everywhere in column "
+                f"{shown(column.title)}: write decimals with points"
             )
 
     def _text_of(self, numbers: Sequence[int]) -> list[str]:
@@ -191,10 +195,12 @@ class Table:
             raise ValueError(f"is not a CSV file: line {line}: {error}") from None
         raise ValueError("is not a CSV file: a quoted field goes over several lines")
 
-    def _too_wide(self, line: int, cells: list[str], columns: int) -> str:
+    def _wrong_width(self, line: int, cells: list[str], columns: int) -> str:
         reason = f"columns are separated by {_SEPARATORS[self.separator]}"
         if self.separator == ",":
             reason += ", so decimals need points"
+        elif self.separator == " ":
+            reason += ", so no field may be empty or hold a blank"
         return (
             f"line {line} ({shown(self._lines[line - 1].strip())}) has {len(cells)} fields, but "
             f"the header, line {self._header_line}, names {columns}: {reason}"
@@ -204,11 +210,12 @@ class Table:
         """Return the columns, and take their units from the first row if it holds them."""
         named = [_name_and_unit(title) for title in titles]
         below = [""] * len(titles)
-        if self._rows and not all(unit for _, unit in named) and _holds_units(self._rows[0][1]):
+        units = [unit for _, unit in named]
+        if self._rows and _holds_units(self._rows[0][1], units):
             line, cells = self._rows.pop(0)
             below = [cell.strip("()[] ") for cell in cells] + below[len(cells) :]
             for (name, unit), other in zip(named, below, strict=False):
-                if unit and other not in ("", "1", unit):
+                if is_unit(unit) and other not in ("", unit):
                     raise ValueError(
                         f"column {shown(name)} has the unit {shown(unit)} in the header and "
                         f"{shown(other)} in line {line}"
@@ -255,11 +262,17 @@ def _name_and_unit(title: str) -> tuple[str, str]:
     return name.rstrip("/ "), unit.strip()
 
 
-def _holds_units(cells: Sequence[str]) -> bool:
-    """Whether a row holds units, of which "1" is that of a plain number."""
-    return any(cells) and not any(_is_number(cell) and cell != "1" for cell in cells) and not all(
-        _is_number(cell) for cell in cells if cell
-    )  # fmt: skip
+def _holds_units(cells: Sequence[str], above: Sequence[str]) -> bool:
+    """Whether the row below titles with these units, "" for none, holds those that they lack.
+
+    A row of numbers and words is one of data. "1" is the unit of a plain number beside other units.
+    """
+    known = [is_unit(unit) for unit in above]
+    found = [cell.strip("()[] ") for cell in cells[: len(above)]]
+    for cell, settled in zip(found, known, strict=False):
+        if (cell and not is_unit(cell)) if settled else (_is_number(cell) and cell != "1"):
+            return False
+    return any(is_unit(cell) and not settled for cell, settled in zip(found, known, strict=False))
 
 
 def _is_number(cell: str) -> bool:

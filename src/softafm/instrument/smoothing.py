@@ -6,6 +6,8 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from softafm.instrument.innovations import judge_residuals
+
 if TYPE_CHECKING:
     from scipy.interpolate import BSpline
 
@@ -17,6 +19,8 @@ _CHANCE = 1000.0
 """In how many records of a smooth path noise may pass for a corner once."""
 _ROUNDING = 1e-9
 """Noise of a record that has none, over its range: that of nine digits."""
+_LARGER = 1, 4, 16, 64, 256
+"""How many times larger white noise may stand for correlated noise."""
 _BLOCK = 500_000
 """Samples in windows that are fit at a time, for the sake of memory."""
 
@@ -28,6 +32,14 @@ class Path(NamedTuple):
     cubics: np.ndarray
     corners: np.ndarray
     noise: float
+
+
+class _Drawn(NamedTuple):
+    """Knots, cubics, and the corners among the knots with both ends, in units of the record."""
+
+    knots: np.ndarray
+    cubics: np.ndarray
+    bounds: np.ndarray
 
 
 def fit_path(time: np.ndarray, height: np.ndarray, noise: float | None) -> Path:
@@ -43,19 +55,45 @@ def fit_path(time: np.ndarray, height: np.ndarray, noise: float | None) -> Path:
     unit, scale = time[-1] - time[0], float(np.ptp(height)) or 1.0
     t, y = (time - time[0]) / unit, (height - height[0]) / scale
     sigma = max(_noise(t, y) if noise is None else noise / scale, _ROUNDING)
-    cuts = _needed(t, y, sigma, [0, *(_corners(t, y, sigma) + 1), t.size])
-    bounds = np.array([0.0, *(0.5 * (t[i - 1] + t[i]) for i in cuts[1:-1]), 1.0])
-    for _ in range(2):  # the second time with every sample on its side of the crossings
-        cuts = [0, *np.searchsorted(t, bounds[1:-1]), t.size]
-        curves = [_curve(t, y, sigma, a, b)[0] for a, b in pairwise(cuts)]
-        bounds = _crossings(t, curves, bounds)
-    knots, cubics = _join(curves, bounds)
+    knots, cubics, bounds = _draw_by_any_noise(t, y, sigma)
     powers = scale / unit ** np.arange(3.0, -1.0, -1.0)
     cubics = cubics * powers[:, None]
     cubics[3] += height[0]
     knots = time[0] + unit * knots
     knots[-1] = time[-1]
     return Path(knots, cubics, time[0] + unit * bounds[1:-1], sigma * scale)
+
+
+def _draw_by_any_noise(t: np.ndarray, y: np.ndarray, sigma: float) -> _Drawn:
+    """Draw a path for white noise, or for correlated noise if the path for white noise leaves that.
+
+    Means of many samples vary by correlated noise as they do by white noise that is larger. So
+    paths for larger noise are drawn, too, and the one that costs least is taken.
+    """
+    from scipy.interpolate import PPoly
+
+    best, least = None, inf
+    for larger in _LARGER:
+        drawn = _draw(t, y, larger * sigma)
+        left, order = judge_residuals(y - PPoly(drawn.cubics, drawn.knots)(t), _ROUNDING)
+        if best is None and order == 0:
+            return drawn
+        cost = left + log(t.size) * (drawn.knots.size + 2 * drawn.bounds.size)
+        if best is None or cost < least - 2 * log(_CHANCE):
+            best, least = drawn, cost
+    assert best is not None
+    return best
+
+
+def _draw(t: np.ndarray, y: np.ndarray, sigma: float) -> _Drawn:
+    """Draw the simplest path that white noise allows."""
+    cuts = _needed(t, y, sigma, [0, *(_corners(t, y, sigma) + 1), t.size])
+    bounds = np.array([0.0, *(0.5 * (t[i - 1] + t[i]) for i in cuts[1:-1]), 1.0])
+    for _ in range(2):  # the second time with every sample on its side of the crossings
+        cuts = [0, *np.searchsorted(t, bounds[1:-1]), t.size]
+        curves = [_curve(t, y, sigma, a, b)[0] for a, b in pairwise(cuts)]
+        bounds = _crossings(t, curves, bounds)
+    return _Drawn(*_join(curves, bounds), bounds)
 
 
 def _noise(t: np.ndarray, y: np.ndarray) -> float:

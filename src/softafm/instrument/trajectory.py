@@ -10,6 +10,10 @@ _CORNER = 0.1
 """Change of velocity, over its largest magnitude, that makes a sample a corner."""
 _RECORD = 100
 """Samples from which a path that is nearly all corners looks like a record with noise."""
+_FAR = 2.0
+"""Ratio of the noise and of what the path leaves, either way, from which one of them is wrong."""
+_FEW_CORNERS, _MANY_KNOTS = 3, 10
+"""Corners, and knots per corner, from which a path looks as if it followed noise."""
 _INVISIBLE = 1e-12
 """Distance that no instrument tells from none, m."""
 _CALM = 10.0
@@ -75,8 +79,9 @@ class Trajectory:
             Heights recorded at these instants, m, shape (n,).
         noise
             Standard deviation of the height of one sample, m; estimated if None, from what a cubic
-            through its four neighbours leaves of each. State it where the noise of neighbours is
-            correlated, as hum is, or behind a low-pass filter.
+            through its four neighbours leaves of each. State all of it where the noise of
+            neighbours is correlated, as hum is, or behind a low-pass filter: the estimate is then
+            too small, and slow hum may pass for motion.
 
         Raises
         ------
@@ -85,6 +90,10 @@ class Trajectory:
 
         Notes
         -----
+        If the path leaves noise whose neighbours are correlated, paths for larger noise are drawn,
+        too, and what they leave is judged as autoregressive noise. ``doubts`` tells where the noise
+        is far from what the path leaves, and where the path looks like hum.
+
         One-sided fits against one fit, at growing distances: C. R. Loader, Ann. Statist. 24, 1667
         (1996). The criterion: G. Schwarz, Ann. Statist. 6, 461 (1978). Noise from local residuals:
         T. Gasser, L. Sroka and C. Jennen-Steinmetz, Biometrika 73, 625 (1986), here their median.
@@ -155,14 +164,7 @@ class Trajectory:
     def doubts(self) -> tuple[str, ...]:
         """What a run should warn of before it starts."""
         if self.noise is not None:
-            misfit = float(np.sqrt(np.mean((self.height(self.time) - self.heights) ** 2)))
-            if misfit <= 2 * self.noise + _INVISIBLE:
-                return ()
-            return (
-                f"the path leaves its {self.time.size} samples by {misfit:.2g} m, root mean "
-                f"square, where their noise is {self.noise:.2g} m: state the noise, or remove "
-                "samples that are outliers",
-            )
+            return self._doubts_of_noise(self.noise)
         if self.time.size < _RECORD or self.corners.size < self.time.size / 2:
             return ()
         return (
@@ -170,6 +172,29 @@ class Trajectory:
             "costs some twenty steps each and takes noise for motion: if they were measured, use "
             "Trajectory.from_measurement (measured = true in a file)",
         )
+
+    def _doubts_of_noise(self, noise: float) -> tuple[str, ...]:
+        misfit = float(np.sqrt(np.mean((self.height(self.time) - self.heights) ** 2)))
+        found = (
+            f"the path leaves its {self.time.size} samples by {misfit:.2g} m, root mean square, "
+            f"where their noise is taken to be {noise:.2g} m: "
+        )
+        if misfit > _FAR * noise + _INVISIBLE:
+            return (
+                f"{found}state noise = {misfit:.2g} m if that of neighbours is correlated, as hum "
+                "is; else remove outliers, or give steps by their corners to Trajectory",
+            )
+        if noise > _FAR * misfit + _INVISIBLE:
+            return (
+                f"{found}so large a noise hides motion; state one of about {misfit:.2g} m, or none",
+            )
+        corners, knots = self.corners.size, self._path.x.size
+        if corners >= _FEW_CORNERS and knots > _MANY_KNOTS * corners:
+            return (
+                f"the path has {corners} corners and {knots - corners} bends between them, as "
+                "one that follows hum: if there is hum, state the noise with that in it",
+            )
+        return ()
 
     @property
     def top_speed(self) -> float:

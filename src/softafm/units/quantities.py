@@ -95,6 +95,18 @@ def _of_another_kind(unit: str, kind: Kind) -> ValueError:
     return ValueError(f"must be {kind.valid}; '{unit}' does not measure {kind.noun}")
 
 
+def is_unit(text: str) -> bool:
+    """Whether a text is a unit, of whatever kind; a number is none."""
+    if len(text) > _LONGEST_UNIT or not plain_units.PATTERN.fullmatch(text):
+        return False
+    if plain_units.parse(text) is not None:
+        return True
+    try:
+        return not _registry().parse_units(text).dimensionless
+    except Exception:  # as above
+        return False
+
+
 def read_quantity(written: object, kind: Kind) -> float:
     """Return in SI the quantity written as text, such as ``"10 nm"``.
 
