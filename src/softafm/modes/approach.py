@@ -19,12 +19,16 @@ from softafm.instrument.motions import Sine
 from softafm.instrument.oscillator import Drive
 from softafm.modes.amplitude_curve import BRANCHES, AmplitudeCurve, Solutions
 from softafm.modes.check import Scales, checked, finer_run
-from softafm.modes.start import refuse_other_than_cantilever, refuse_tapped_flow, regularised
+from softafm.modes.start import (
+    refuse_other_than_cantilever,
+    refuse_tapped_flow,
+    regularised,
+    solver_of,
+)
 from softafm.modes.tap_map import OBSERVABLES, TapMap
 from softafm.modes.tapping import tap_observables
 from softafm.progress import Progress, reporting
 from softafm.results.datasets import curve_dataset, record_regularisation
-from softafm.solvers.energy import Energy
 from softafm.units.quantities import readable
 
 if TYPE_CHECKING:
@@ -89,8 +93,7 @@ def approach_curve(
     """
     finer = finer_run(check, solver, tolerance)
     given, contact = contact, regularised(contact, regularise)
-    tolerance = tolerance_of(tolerance)
-    solver = Energy() if solver is None else solver
+    tolerance, solver = tolerance_of(tolerance), solver_of(solver)
     refuse_other_than_cantilever(cantilever)
     refuse_tapped_flow(contact)
     ratios = _ratios(amplitude_ratio)
