@@ -14,6 +14,7 @@ import numpy as np
 
 import softafm
 from softafm.checks.kinds import refuse_non_dataset
+from softafm.checks.paths import why_no_file
 from softafm.results.content import FORMAT, LARGEST, variable
 from softafm.results.netcdf import file_content
 from softafm.solvers.history import History
@@ -222,7 +223,7 @@ def load(path, *, largest: float = LARGEST) -> "Dataset":
     from softafm.results.files import read
 
     if not Path(path).is_file():
-        raise FileNotFoundError(f"{path}: no such file")
+        raise FileNotFoundError(f"{path}: {why_no_file(Path(path))}")
     try:
         return result_of(*read(str(path), int(largest)))
     except ValueError as problem:
@@ -249,7 +250,7 @@ def load_apart(path, *, largest: float = LARGEST, seconds: float | None = None) 
     from softafm.files.guard import read_apart, seconds_for
 
     if not Path(path).is_file():
-        raise FileNotFoundError(f"{path}: no such file")
+        raise FileNotFoundError(f"{path}: {why_no_file(Path(path))}")
     try:
         found = read_apart(
             "softafm.results.files:read",
