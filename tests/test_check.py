@@ -167,6 +167,9 @@ class Plain:
 
     kind, adaptive = "plain", False
 
+    def solve(self, contact, motion, **options):
+        raise AssertionError("it was to be refused before any run")
+
 
 @pytest.mark.parametrize(
     ("options", "text"),

@@ -252,6 +252,18 @@ def test_the_name_of_a_build_follows_its_options(probed):
     assert len(builds) == 2
 
 
+def test_without_a_compiler_one_line_says_what_to_unset(tmp_path):
+    environment = os.environ | {"NUMBA_DISABLE_JIT": "1"}
+    file = PACKAGE / "examples" / "pdms-sphere.toml"
+    command = [sys.executable, "-m", "softafm", "run", file, "--out", tmp_path / "out.nc"]
+    done = subprocess.run(command, env=environment, capture_output=True, text=True)
+    assert (done.returncode, done.stdout) == (1, "")
+    assert len(done.stderr.splitlines()) == 1
+    assert "NUMBA_DISABLE_JIT is set" in done.stderr
+    assert done.stderr.endswith("softafm needs compiled code; unset it\n")
+    assert list(tmp_path.iterdir()) == []
+
+
 def test_what_loops_are_made_of_stands_where_the_build_is_named_after():
     """Their functions, and whatever they import from other files of the package."""
     from softafm.compiled.functions import CompiledFunction

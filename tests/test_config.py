@@ -1387,7 +1387,7 @@ def test_missing_files_folders_and_pipes(tmp_path):
     for name, reason in (
         ("none.toml", "no such file"),
         ("", "is a directory"),
-        ("pipe.toml", "no such file"),
+        ("pipe.toml", "is not a regular file"),
         ("x" * 5000, "File name too long"),
         ("nul\0byte", "no such file"),
     ):

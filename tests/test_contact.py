@@ -111,3 +111,7 @@ def test_any_object_with_these_attributes_is_a_sample():
     contact = sa.Contact(LDPE.tip, Rubber(), LDPE.surface)
     assert contact.tabor_relaxed == LDPE.tabor_relaxed
     assert contact.contact_radius(-1e-9) == LDPE.contact_radius(-1e-9)
+    ramp = sa.Triangle(4e-9, 2e-9, 1e-3)
+    np.testing.assert_array_equal(
+        sa.force_distance(contact, ramp)["force"], sa.force_distance(LDPE, ramp)["force"]
+    )

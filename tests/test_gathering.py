@@ -57,6 +57,31 @@ def test_a_curve_in_liquid_warns_once_of_each_kind():
     assert deepest >= np.nanmax(result["indentation"].values) * 0.99
 
 
+@pytest.mark.parametrize("quality", [2.0, 3.0])
+def test_a_lever_that_does_not_move_as_a_sine_is_warned_of(quality):
+    lever = replace(LIQUID, quality_factor=quality)
+    result, told = warned_of(
+        lambda: sa.approach_curve(CONTACT, lever, 10e-9, [0.9, 0.7], tolerance=0.1)
+    )
+    doubts = [text for text in told if "does not move as the sine" in text]
+    assert len(doubts) == 1
+    assert f"at quality_factor = {quality:g} and 1 times the resonance frequency" in doubts[0]
+    assert doubts[0] in result.attrs["warnings"].splitlines()
+    # At resonance and without dissipation the second harmonic is √(A0² − A²)/(3Q), over A.
+    share = float(doubts[0].partition(" of the amplitude")[0].split()[-1])
+    assert share == pytest.approx(np.sqrt(1 / 0.7**2 - 1) / (3 * quality), rel=0.1)
+
+
+def test_a_map_tells_once_of_levers_that_do_not_move_as_a_sine():
+    moduli = np.array([[0.3e9, 0.35e9, 0.4e9]])
+    sample = sa.SampleMap(CONTACT, 30e-9, {"sample.E_inf": moduli})
+    imaging = sa.AmplitudeModulation(LIQUID, 10e-9, 0.8)
+    result, told = warned_of(lambda: sa.scan(sample, imaging, tolerance=0.1))
+    (doubt,) = [text for text in told if "does not move as the sine" in text]
+    assert doubt.startswith("3 of 3 different pixels, the worst at pixel (0, ")
+    assert doubt in result.attrs["warnings"].splitlines()
+
+
 @pytest.mark.parametrize("workers", [1, 2])
 def test_a_force_volume_warns_once_of_each_kind(workers):
     size = (2, 3)

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 
 from softafm.instrument.oscillator import Drive
@@ -189,3 +190,43 @@ def test_stable_solutions_attract_and_unstable_ones_do_not(case, detuning, free,
             assert np.abs(last).max() < 0.1
         else:
             assert np.median(farthest) > 0.5
+
+
+def swing(quality, detuning, height, damping=0.0):
+    """Amplitude, virial, dissipation and second harmonic over the first of a lever in steady taps.
+
+    Its equation of motion, with time in 1/ω0, above a Hertz contact with a dashpot.
+    """
+    k, free, radius, modulus = 0.5, 10e-9, 20e-9, 1e8
+    force0 = Drive(k, quality, detuning, free).force
+
+    def force(depth, speed):
+        depth = np.maximum(depth, 0.0)
+        return 4 / 3 * modulus * np.sqrt(radius) * depth**1.5 - damping * np.sqrt(depth) * speed
+
+    def motion(time, state):
+        q, speed = state
+        push = force(-height - q, speed)
+        return speed, (force0 * np.cos(detuning * time) + push) / k - speed / quality - q
+
+    period = 2 * np.pi / detuning
+    last = max(40, int(6 * quality)) * period
+    at = last + period * np.arange(2048) / 2048
+    options = {"rtol": 1e-8, "atol": 1e-17, "max_step": period / 60, "t_eval": at}
+    q, speed = solve_ivp(motion, (0, at[-1]), (0, 0), **options).y
+    harmonics = np.abs(np.fft.rfft(q)) * 2 / at.size
+    pushes = force(-height - q, speed)
+    virial, dissipation = np.mean(pushes * (q - q.mean())), -np.mean(pushes * speed) * period
+    return harmonics[1], virial, dissipation, harmonics[2] / harmonics[1]
+
+
+@pytest.mark.parametrize(
+    ("quality", "detuning", "height", "damping"),
+    [(2, 1, 5e-9, 0), (3, 1, 4e-9, 5e2), (10, 1, 7e-9, 0), (5, 0.9, 7e-9, 5e2), (30, 0.6, 8e-9, 0)],
+)
+def test_the_second_harmonic_is_that_of_the_equation_of_motion(quality, detuning, height, damping):
+    amplitude, virial, dissipation, share = swing(quality, detuning, height, damping)
+    assert dissipation > 0.01 * abs(virial) if damping else abs(dissipation) < 0.01 * abs(virial)
+    drive = Drive(0.5, quality, detuning, 10e-9)
+    estimate = drive.second_harmonic(amplitude, virial, dissipation)
+    assert share == pytest.approx(estimate, rel=0.35)

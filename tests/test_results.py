@@ -337,6 +337,8 @@ def test_a_result_that_cannot_be_written_leaves_the_old_file(result, tmp_path, n
 
 def test_a_csv_that_cannot_be_written_leaves_nothing(result, tmp_path):
     with pytest.raises(AttributeError):
+        sa.export(result.drop_attrs().assign_attrs(result.attrs), tmp_path / "curve.csv")
+    with pytest.raises(ValueError, match="the dataset is not a result of softafm"):
         sa.export(result.drop_attrs(), tmp_path / "curve.csv")
     assert left_in(tmp_path) == []
 

@@ -248,7 +248,7 @@ E0 = 4e9 * OK
     [
         (lambda: sa.SampleMap(PS, 1e-6), r"fields = {}: must hold an array"),
         (lambda: sa.SampleMap([PS, LDPE], 1e-6), "labels: missing"),
-        (lambda: sa.SampleMap([], 1e-6, height=OK), "materials = .*must be a Contact"),
+        (lambda: sa.SampleMap([], 1e-6, height=OK), "materials = .*must be a softafm.Contact"),
         (
             lambda: sa.SampleMap([PS, replace(LDPE, tip=sa.Paraboloid(2e-8))], 1e-6, labels=0 * OK),
             "materials: must all have the same tip",
@@ -290,7 +290,7 @@ E0 = 4e9 * OK
             r"ranges\['height'\] = 3: must be two numbers",
         ),
         (lambda: sa.SampleMap.from_image(3 * OK, PS, 1e-6, {}), r"image\[0, 0\] = 3: must be from"),
-        (lambda: sa.scan(PS, TAPPING), "sample = Contact.*must be a SampleMap"),
+        (lambda: sa.scan(PS, TAPPING), "sample = Contact.*must be a softafm.SampleMap"),
         (lambda: sa.scan(BLEND, LEVER), "imaging = .*must be an AmplitudeModulation"),
         (lambda: sa.scan(BLEND, TAPPING, workers=0), "workers = 0: must be a whole number"),
         (lambda: sa.scan(BLEND, TAPPING, tolerance=1), "tolerance = 1"),

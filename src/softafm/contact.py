@@ -3,17 +3,15 @@
 from dataclasses import dataclass, replace
 from functools import cached_property
 from math import inf, pi, sqrt
-from typing import TYPE_CHECKING
 
 import numpy as np
 
+from softafm.checks.kinds import SAMPLE, refuse_incomplete, refuse_other
 from softafm.checks.validate import tabor_of
+from softafm.rheology import Solid
+from softafm.surfaces import SurfaceLaw
 from softafm.surfaces.limits import LONGEST
-
-if TYPE_CHECKING:
-    from softafm.rheology import Solid
-    from softafm.surfaces import SurfaceLaw
-    from softafm.tips import Tip
+from softafm.tips import Tip
 
 _ZOOMS, _POINTS = 9, 33
 _ANGLES, _ANGLE_WEIGHTS = (pi / 4 * x for x in np.polynomial.legendre.leggauss(16))
@@ -35,11 +33,23 @@ class Contact:
         Rheology of the half-space, e.g. ``StandardLinearSolid``.
     surface
         Pressure against gap, e.g. ``LennardJones``.
+
+    Raises
+    ------
+    ValueError
+        If one of them is something else.
     """
 
-    tip: "Tip"
-    sample: "Solid"
-    surface: "SurfaceLaw"
+    tip: Tip
+    sample: Solid
+    surface: SurfaceLaw
+
+    def __post_init__(self):
+        refuse_other("tip", self.tip, Tip, "a tip such as softafm.Paraboloid")
+        refuse_incomplete("sample", self.sample, SAMPLE, "a sample such as softafm.Elastic")
+        refuse_other(
+            "surface", self.surface, SurfaceLaw, "a surface law such as softafm.LennardJones"
+        )
 
     @property
     def _modulus_instantaneous(self) -> float:

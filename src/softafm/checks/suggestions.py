@@ -79,6 +79,19 @@ _OTHER_WORDS = {
     "tabulated": "table file",
 }
 """What else a name is called, without case, spaces, hyphens and underscores."""
+_LIMITS = {
+    **dict.fromkeys(("jkr", "dmtjkr", "jkrdmt"), ("JKR", "a law with adhesion on a soft sample")),
+    **dict.fromkeys(("hertz", "hertzian"), ("Hertz", "a law without adhesion, 'repulsion'")),
+}
+"""Theories of contact that are taken for laws, and of what they are the limit."""
+
+
+def limit(given: str) -> str:
+    """Say of a theory of contact given as a surface law what it is instead; else return ""."""
+    name, what = _LIMITS.get(_plain(given), ("", ""))
+    return name and (
+        f"{name} is no law but the limit of {what}; its closed form is in softafm.indentation; "
+    )
 
 
 def meant(given: str, valid: Sequence[str]) -> list[str]:

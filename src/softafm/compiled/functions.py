@@ -11,7 +11,7 @@ from functools import cache, cached_property, partial
 from hashlib import sha256
 from typing import Any
 
-from numba import float64, int64, njit, types, void
+from numba import config, float64, int64, njit, types, void
 from numba.core.caching import _Cache
 from numba.core.compiler import CompileResult
 from numba.core.serialize import dumps
@@ -20,6 +20,12 @@ from numba.extending import typeof_impl
 
 from softafm.compiled import store
 from softafm.compiled.formulas import Shape
+
+if config.DISABLE_JIT:
+    raise RuntimeError(
+        "NUMBA_DISABLE_JIT is set, so that numba compiles nothing, and softafm needs compiled "
+        "code; unset it"
+    )
 
 _ARRAY = float64[::1]
 _OPTIONS: dict[str, Any] = {

@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from softafm.checks.kinds import refuse_non_dataset
 from softafm.checks.validate import positive, whole
 from softafm.draw.scene_parts import SAMPLE_COLOURS, TIP_COLOURS, draw, scales, titles, writers
 from softafm.draw.scenes import require_shapes, scenes_at, view_of, window
@@ -88,6 +89,7 @@ def animate(
     suffix = path.suffix.lower()
     if suffix not in SUFFIXES:
         raise ValueError(f"{path}: suffix {suffix!r} is not known, must be .mp4, .gif or .html")
+    refuse_non_dataset("result", result)
     require_shapes(result)
     whole("frames", frames, 2, _MOST_FRAMES)
     seconds = positive("seconds", seconds, "s")

@@ -4,6 +4,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from softafm.checks.kinds import refuse_other
 from softafm.contact import Contact
 from softafm.draw.law import draw_laws
 from softafm.draw.sample import SAMPLES, draw_moduli, draw_steps, times_of
@@ -31,10 +32,16 @@ def plot_contact(contact: Contact) -> "Figure":
         The profile of the tip, dashed the paraboloid of its apex; pressure and potential against
         the gap; relaxation modulus and creep compliance over time, storage and loss modulus over
         frequency. Save it with ``figure.savefig``.
+
+    Raises
+    ------
+    ValueError
+        If it is not a contact.
     """
     from matplotlib.figure import Figure
     from matplotlib.layout_engine import ConstrainedLayoutEngine
 
+    refuse_other("contact", contact, Contact, "a softafm.Contact")
     tip, surface, sample = contact.tip, contact.surface, contact.sample
     layout = ConstrainedLayoutEngine(wspace=0.07, hspace=0.05)
     figure = Figure(figsize=(12.6, 7.2), dpi=150, layout=layout)

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from matplotlib.figure import Figure
 
+from softafm.checks.kinds import list_of
 from softafm.draw.style import factor_of, label_of, labels_of, prefix_of
 
 if TYPE_CHECKING:
@@ -63,7 +64,7 @@ def plot_map(
     """
     from xarray import Dataset
 
-    runs = [maps] if isinstance(maps, Dataset) else list(maps)
+    runs = list_of("maps", maps, Dataset, "a result of softafm, an xarray.Dataset")
     titles = labels_of("dataset", runs, labels, ("" for _ in runs))
     if names is None:
         names = _USUAL.get(str(runs[0].attrs.get("mode")))

@@ -8,6 +8,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
+from softafm.checks.kinds import list_of
 from softafm.draw.approach import approach_curve
 from softafm.draw.histories import AXES, felt, moved, strokes
 from softafm.draw.style import (
@@ -54,7 +55,7 @@ def plot(
         If there is nothing to draw, if the modes differ or have no figure, or if the number of
         labels is not that of datasets.
     """
-    runs = [datasets] if isinstance(datasets, xr.Dataset) else list(datasets)
+    runs = list_of("datasets", datasets, xr.Dataset, "a result of softafm, an xarray.Dataset")
     names = labels_of("dataset", runs, labels, (f"run {i + 1}" for i in range(len(runs))))
     modes = sorted({str(run.attrs.get("mode")) for run in runs})
     figures = {

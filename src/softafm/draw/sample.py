@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from softafm.checks.kinds import refuse_other
 from softafm.rheology.dma import sort_moduli
 from softafm.rheology.interconversion import chain_to_prony
 from softafm.rheology.lists import window_of
@@ -49,6 +50,7 @@ def plot_rheology(
     from matplotlib.figure import Figure
     from matplotlib.layout_engine import ConstrainedLayoutEngine
 
+    refuse_other("sample", sample, Solid, "a sample such as softafm.Elastic")
     measured = None if data is None else sort_moduli(*data)
     shortest, longest = times_of(sample, measured) if window is None else window_of(window)
     time = np.geomspace(shortest, longest, SAMPLES)

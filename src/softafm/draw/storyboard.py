@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from softafm.checks.kinds import refuse_non_dataset
 from softafm.checks.validate import whole
 from softafm.draw.scene_parts import draw, titles, writers
 from softafm.draw.scenes import (
@@ -62,6 +63,7 @@ def plot_profiles(
     """
     from matplotlib.figure import Figure
 
+    refuse_non_dataset("result", result)
     require_shapes(result)
     whole("frames", frames, 2, len(_LETTERS))
     instants = instants_of(result, frames, *window(result, start, stop, margin=0.05))

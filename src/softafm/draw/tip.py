@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from softafm.checks.kinds import list_of
 from softafm.checks.validate import positive
 from softafm.tips import Tip
 
@@ -52,7 +53,7 @@ def plot_tip(
 
     from softafm.draw.style import labels_of
 
-    drawn = [tips] if isinstance(tips, Tip) else list(tips)
+    drawn = list_of("tips", tips, Tip, "a tip such as softafm.Paraboloid")
     names = labels_of("tip", drawn, labels, (tip.kind for tip in drawn))
     extent = extent_of(drawn) if extent is None else positive("extent", extent, "m")
     figure = Figure(figsize=(6.4, 4.4), dpi=150, layout="constrained")

@@ -7,6 +7,7 @@ from importlib import resources
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from softafm.checks.paths import why_no_file
 from softafm.checks.refusals import ConfigError, as_written, nearest, one_of, shown, unknown
 from softafm.contact import Contact
 from softafm.experiment import schema
@@ -182,7 +183,7 @@ def load_document(path: str | Path) -> dict[str, Any]:
     try:
         refuse_result(path)
         if not path.is_file():
-            raise ConfigError([f"{name}: {'is a directory' if path.is_dir() else 'no such file'}"])
+            raise ConfigError([f"{name}: {why_no_file(path)}"])
         size = path.stat().st_size
         if size > LARGEST_FILE:
             raise ConfigError(
@@ -192,10 +193,23 @@ def load_document(path: str | Path) -> dict[str, Any]:
     except OSError as error:
         raise ConfigError([f"{name}: {error.strerror or error}"]) from None
     except UnicodeDecodeError as error:
+        _refuse_other_than_toml(path)
         raise ConfigError(
             [f"{name}: is not text in UTF-8 (byte {error.start}); save it as UTF-8"]
         ) from None
-    return document_from(text, name)
+    try:
+        return document_from(text, name)
+    except ConfigError:
+        _refuse_other_than_toml(path)
+        raise
+
+
+def _refuse_other_than_toml(path: Path) -> None:
+    """Of a file that cannot be read and is called otherwise, no line and column are of help."""
+    if path.suffix.lower() not in ("", ".toml"):
+        raise ConfigError(
+            [f"{path}: is not a TOML file; experiments are described in one, such as 'tap.toml'"]
+        ) from None
 
 
 def document_from(text: str, name: str) -> dict[str, Any]:

@@ -12,6 +12,7 @@ from pydantic import AfterValidator, BeforeValidator, Field, ValidationInfo
 from softafm.checks.refusals import nearest
 from softafm.checks.validate import finite, poisson_ratio, positive, tabor_of, tolerance_of, whole
 from softafm.units import quantities as units
+from softafm.units.respelling import respell_number
 
 _MOST_ENTRIES = 1000
 _MOST_PIXELS = 4096
@@ -47,6 +48,9 @@ def _quantities(kind: units.Kind) -> tuple[Any, ...]:
 
 def _number(written: Any) -> float:
     if isinstance(written, bool) or not isinstance(written, int | float):
+        meant = respell_number(" ".join(written.split())) if isinstance(written, str) else []
+        if meant:
+            raise ValueError(f"must be a plain number; did you mean {' or '.join(meant)}?")
         raise ValueError("must be a plain number, without quotes or unit")
     try:
         return finite("", written, "")

@@ -30,6 +30,7 @@ from softafm.checks.refusals import (
     problems,
     shown,
 )
+from softafm.checks.suggestions import limit
 from softafm.experiment.entries import (
     Angle,
     Compliances,
@@ -565,6 +566,8 @@ def chosen(
         raise ConfigError([f"{name}.{chooser}: missing; must be {one_of(list(choices))}"])
     if not isinstance(choice, str) or choice not in choices:
         reason = nearest(choice, list(choices))
+        if chooser == "law" and isinstance(choice, str):
+            reason = limit(choice) + reason
         raise ConfigError([f"{name}.{chooser} = {shown(choice)}: {reason}"])
     return built(name, written, choices[choice], chooser=chooser, folder=folder)
 

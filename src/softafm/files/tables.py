@@ -14,6 +14,7 @@ from pathlib import Path
 
 import numpy as np
 
+from softafm.checks.paths import why_no_file
 from softafm.units.quantities import LARGEST, Kind, is_unit, read_quantity
 
 LARGEST_FILE = 100_000_000
@@ -229,7 +230,7 @@ class Table:
 def _text(path: Path) -> str:
     try:
         if not path.is_file():
-            raise ValueError("is a directory" if path.is_dir() else "no such file")
+            raise ValueError(why_no_file(path))
         if path.stat().st_size > LARGEST_FILE:
             raise ValueError(f"is larger than {LARGEST_FILE // 1_000_000} MB")
         return path.read_text(encoding="utf-8-sig")

@@ -73,6 +73,18 @@ class Drive:
         in_phase, behind = self.components(amplitude, virial, dissipation)
         return np.degrees(np.arctan2(behind, in_phase))
 
+    def second_harmonic(self, amplitude, virial, dissipation):
+        """Second harmonic of the deflection over its first, which the balance leaves out.
+
+        The tip's force has the components 2V/A and E/(πA) at the drive's frequency; that of a
+        brief contact at the turning point has 2V/A and 2E/(πA) at twice that. The lever yields to
+        them as an oscillator, by 1/k|1 − 4r² + 2ir/Q|: at resonance about 1/(3k).
+        """
+        r = self.detuning
+        yields = self.stiffness * hypot(1 - 4 * r * r, 2 * r / self.quality_factor)
+        force = np.hypot(2 * virial / amplitude, 2 * dissipation / (pi * amplitude))
+        return force / (yields * amplitude)
+
     def stable(self, amplitude, virial, dissipation, virial_slope, dissipation_slope):
         """Whether a solution attracts, from dV/dA and dE/dA at fixed height of the lever, J/m.
 

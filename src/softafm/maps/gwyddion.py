@@ -4,6 +4,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from softafm.checks.kinds import refuse_non_dataset
 from softafm.results.datasets import write_whole
 
 if TYPE_CHECKING:
@@ -32,6 +33,7 @@ def export_gwyddion(result: "Dataset", path, *, overwrite: bool = False) -> None
     """
     if not str(path).lower().endswith(".gwy"):
         raise ValueError(f"{path}: suffix must be .gwy")
+    refuse_non_dataset("result", result)
     names = [str(name) for name, each in result.data_vars.items() if each.dims == ("y", "x")]
     if not names:
         raise ValueError("the dataset holds no maps over (y, x): only those of a scan have a .gwy")

@@ -3,6 +3,7 @@
 from dataclasses import dataclass
 from typing import ClassVar, Literal
 
+from softafm.checks.kinds import refuse_other
 from softafm.checks.validate import finite, one_of, positive
 from softafm.instrument.cantilever import Cantilever
 from softafm.instrument.motions import Sine, Trajectory, Triangle
@@ -74,9 +75,7 @@ class ForceVolume:
     cantilever: Cantilever | None = None
 
     def __post_init__(self):
-        if not isinstance(self.motion, Triangle | Sine | Trajectory):
-            raise ValueError(
-                f"motion = {self.motion!r}: must be a Triangle, a Sine or a Trajectory"
-            )
+        kinds = Triangle, Sine, Trajectory
+        refuse_other("motion", self.motion, kinds, "a Triangle, a Sine or a Trajectory")
         if self.cantilever is not None:
             refuse_other_than_cantilever(self.cantilever)

@@ -8,6 +8,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from softafm.checks.kinds import list_of, refuse_other
 from softafm.checks.validate import positive
 from softafm.contact import Contact
 
@@ -66,10 +67,9 @@ class SampleMap:
     height: Any = None
 
     def __post_init__(self):
-        one = isinstance(self.materials, Contact)
-        materials = (self.materials,) if one else tuple(self.materials)
-        if not materials or not all(isinstance(each, Contact) for each in materials):
-            raise ValueError(f"materials = {self.materials!r}: must be a Contact, or several")
+        materials = tuple(list_of("materials", self.materials, Contact, "a softafm.Contact"))
+        if not materials:
+            raise ValueError("materials = []: must be a softafm.Contact, or several in a list")
         if any(each.tip != materials[0].tip for each in materials):
             raise ValueError("materials: must all have the same tip, as one tip scans them")
         if self.labels is None and len(materials) > 1:
@@ -118,6 +118,8 @@ class SampleMap:
         size, height
             As for ``SampleMap``.
         """
+        refuse_other("one", one, Contact, "a softafm.Contact")
+        refuse_other("other", other, Contact, "a softafm.Contact")
         share = _image("share", share)
         wrong = np.argwhere((share < 0) | (share > 1))
         if wrong.size:

@@ -12,15 +12,15 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from softafm.checks.gathering import Placed, gather
+from softafm.checks.kinds import refuse_other
 from softafm.checks.validate import tabor_of, tolerance_of, whole
 from softafm.errors import AccuracyWarning
 from softafm.maps import curve_pixels, tapped_lines
 from softafm.maps.imaging import AmplitudeModulation, ForceVolume
 from softafm.maps.sample_map import SampleMap
-from softafm.modes.start import refuse_start_inside, refuse_tapped_flow, refuse_unable
+from softafm.modes.start import refuse_start_inside, refuse_tapped_flow, refuse_unable, solver_of
 from softafm.progress import Progress, reporting
 from softafm.results.datasets import curve_dataset, describe, misfit_attributes
-from softafm.solvers.energy import Energy
 
 if TYPE_CHECKING:
     from xarray import Dataset
@@ -82,12 +82,11 @@ def scan(
     ValueError
         If an argument is out of range, or the properties of a pixel are.
     """
-    if not isinstance(sample, SampleMap):
-        raise ValueError(f"sample = {sample!r}: must be a SampleMap")
-    if not isinstance(imaging, AmplitudeModulation | ForceVolume):
-        raise ValueError(f"imaging = {imaging!r}: must be an AmplitudeModulation or a ForceVolume")
+    refuse_other("sample", sample, SampleMap, "a softafm.SampleMap")
+    kinds = AmplitudeModulation, ForceVolume
+    refuse_other("imaging", imaging, kinds, "an AmplitudeModulation or a ForceVolume")
     tolerance, workers = tolerance_of(tolerance), whole("workers", workers, 1, 1024)
-    solver = Energy() if solver is None else solver
+    solver = solver_of(solver)
     contacts = sample.pixels.contacts
     if regularise is not None:
         tabor = tabor_of("regularise", regularise)

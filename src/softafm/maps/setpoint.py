@@ -16,6 +16,7 @@ from softafm.errors import AccuracyWarning, DivergedError
 from softafm.instrument.motions import Sine
 from softafm.instrument.oscillator import Drive
 from softafm.modes.amplitude_curve import AmplitudeCurve
+from softafm.modes.approach import doubt_sine
 from softafm.modes.tap_map import OBSERVABLES, TapMap
 from softafm.modes.tapping import tap_observables
 
@@ -69,7 +70,7 @@ class Setpoint:
     taps
         Taps that were run.
     told
-        What the solver warned of since it was emptied.
+        What the solver and ``doubt`` warned of since it was emptied.
     """
 
     drive: Drive
@@ -93,6 +94,11 @@ class Setpoint:
     def excess(self, values) -> float:
         """Force needed over that of the drive, less 1."""
         return float(self.drive.excess(self.amplitude, values[0], values[1]))
+
+    def doubt(self, point: Point) -> None:
+        """Keep among what is told that the lever does not move as a sine, if so."""
+        if (doubtful := doubt_sine(self.drive, self.amplitude, *point.values[:2])) is not None:
+            self.told.append(doubtful)
 
     def phase(self, values) -> float:
         """Lag of the deflection behind the drive, degrees."""

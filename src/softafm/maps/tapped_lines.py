@@ -118,6 +118,8 @@ def walk(setpoint: Setpoint, spots: list[Spot], branch: int, known: Known) -> Ta
         if key not in known.solved:
             setpoint.told.clear()
             known.solved[key] = _solved(setpoint, spot, branch, known, last)
+            if isinstance(point := known.solved[key], Point):
+                setpoint.doubt(point)
             told += [(spot.number, each) for each in worst_of_each_kind(setpoint.told)]
         found = known.solved[key]
         if isinstance(found, str):

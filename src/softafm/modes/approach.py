@@ -19,18 +19,24 @@ from softafm.instrument.motions import Sine
 from softafm.instrument.oscillator import Drive
 from softafm.modes.amplitude_curve import BRANCHES, AmplitudeCurve, Solutions
 from softafm.modes.check import Scales, checked, finer_run
-from softafm.modes.start import refuse_other_than_cantilever, refuse_tapped_flow, regularised
+from softafm.modes.start import (
+    refuse_other_than_cantilever,
+    refuse_tapped_flow,
+    regularised,
+    solver_of,
+)
 from softafm.modes.tap_map import OBSERVABLES, TapMap
 from softafm.modes.tapping import tap_observables
 from softafm.progress import Progress, reporting
 from softafm.results.datasets import curve_dataset, record_regularisation
-from softafm.solvers.energy import Energy
 from softafm.units.quantities import readable
 
 if TYPE_CHECKING:
     from xarray import Dataset
 
 _HEIGHTS, _CHECKS = 241, 6
+_SINE = 0.02
+"""Second harmonic over the first up to which the tip moves as a sine."""
 
 
 def approach_curve(
@@ -89,8 +95,7 @@ def approach_curve(
     """
     finer = finer_run(check, solver, tolerance)
     given, contact = contact, regularised(contact, regularise)
-    tolerance = tolerance_of(tolerance)
-    solver = Energy() if solver is None else solver
+    tolerance, solver = tolerance_of(tolerance), solver_of(solver)
     refuse_other_than_cantilever(cantilever)
     refuse_tapped_flow(contact)
     ratios = _ratios(amplitude_ratio)
@@ -172,6 +177,26 @@ def deepest_tap(contact: Contact, drive: Drive, frequency: float, amplitudes) ->
     return Sine(amplitude - float(depth[deepest]), amplitude, frequency, "steady")
 
 
+def doubt_sine(drive: Drive, amplitude, virial, dissipation) -> AccuracyWarning | None:
+    """Return what to warn of where a lever would not move as a sine, or nothing.
+
+    Amplitudes, m, virials and dissipations, J, of solutions: arrays of one shape, or numbers.
+    """
+    shares = np.atleast_1d(drive.second_harmonic(amplitude, virial, dissipation))
+    worst = int(shares.argmax())
+    if shares[worst] <= _SINE:
+        return None
+    off = readable(float(shares[worst] * np.atleast_1d(amplitude)[worst]), "m")
+    text = (
+        f"the lever does not move as the sine that is assumed: its second harmonic is {off}, "
+        f"{shares[worst]:.2g} of the amplitude, at quality_factor = {drive.quality_factor:g} and "
+        f"{drive.detuning:.3g} times the resonance frequency; heights are off by about as much, "
+        "and forces and energies with them; take a lever of a higher quality factor, a drive "
+        "nearer to resonance or amplitudes nearer to the free one"
+    )
+    return AccuracyWarning(text, float(shares[worst]))
+
+
 def _where(tap: tuple[float, float]) -> str:
     amplitude, approach = tap
     height = readable(amplitude + approach, "m")
@@ -189,6 +214,9 @@ def _warnings(taps, tap, drive, tolerance, found: Solutions) -> Iterator[Accurac
     if found.amplitude.size == 0:
         yield AccuracyWarning("no height goes with any of the amplitudes: there is nothing to plot")
         return
+    values = taps.virial_and_dissipation(found.amplitude, found.approach)
+    if (doubtful := doubt_sine(drive, found.amplitude, *values)) is not None:
+        yield doubtful
     wrong = []
     for i in _checked(found):
         amplitude, approach = found.amplitude[i], found.approach[i]

@@ -10,9 +10,9 @@ import numpy as np
 
 from softafm.checks.validate import one_of, tolerance_of
 from softafm.errors import AccuracyWarning, DivergedError
+from softafm.modes.start import solver_of
 from softafm.progress import Progress, reporting
 from softafm.results.datasets import describe
-from softafm.solvers.energy import Energy
 
 if TYPE_CHECKING:
     from xarray import Dataset
@@ -69,12 +69,11 @@ def finer_run(check: bool, solver, tolerance: float) -> Finer | None:
     Raises
     ------
     ValueError
-        If there is nothing finer.
+        If there is nothing finer, or an argument is none such.
     """
+    tolerance, solver = tolerance_of(tolerance), solver_of(solver)
     if not one_of("check", check, (True, False)):
         return None
-    tolerance = tolerance_of(tolerance)
-    solver = Energy() if solver is None else solver
     if solver.adaptive:
         if tolerance < _LEAST:
             raise ValueError(

@@ -3,6 +3,7 @@
 import warnings
 from dataclasses import replace
 
+from softafm.checks.kinds import MOTION, SOLVER, refuse_incomplete, refuse_other
 from softafm.checks.validate import tabor_of, tolerance_of
 from softafm.contact import Contact
 from softafm.errors import AccuracyWarning
@@ -16,8 +17,8 @@ def carry(contact, motion, solver, tolerance, profiles, progress, **options):
 
     ``solver`` None stands for ``Energy()``. ``options`` go to the solver.
     """
-    tolerance = tolerance_of(tolerance)
-    solver = Energy() if solver is None else solver
+    tolerance, solver = tolerance_of(tolerance), solver_of(solver)
+    refuse_incomplete("motion", motion, MOTION, "a motion such as softafm.Triangle")
     refuse_start_inside(contact, motion)
     if getattr(motion, "steady", False):
         refuse_flow(contact, "cycles = 'steady'", "give a number of cycles")
@@ -33,8 +34,20 @@ def carry(contact, motion, solver, tolerance, profiles, progress, **options):
     return solver, tolerance, replace(history, warnings=(*doubts, *history.warnings))
 
 
+def solver_of(solver):
+    """Return the solver of a run, ``Energy()`` for None; ValueError if it is not one."""
+    if solver is None:
+        return Energy()
+    refuse_incomplete("solver", solver, SOLVER, "a solver such as softafm.solvers.Energy()")
+    return solver
+
+
 def regularised(contact: Contact, tabor: float | None) -> Contact:
-    """Return the contact that a mode's option ``regularise`` stands for."""
+    """Return the contact that a mode's option ``regularise`` stands for.
+
+    ValueError if it is none, or the number is out of range.
+    """
+    refuse_other("contact", contact, Contact, "a softafm.Contact")
     return contact if tabor is None else contact.regularised(tabor_of("regularise", tabor))
 
 
@@ -57,8 +70,7 @@ def doubt_window(contact, motion) -> tuple[AccuracyWarning, ...]:
 
 def refuse_other_than_cantilever(cantilever) -> None:
     """Raise ValueError if it is not a ``Cantilever``."""
-    if not isinstance(cantilever, Cantilever):
-        raise ValueError(f"cantilever = {cantilever!r}: must be a softafm.Cantilever")
+    refuse_other("cantilever", cantilever, Cantilever, "a softafm.Cantilever")
 
 
 def refuse_start_inside(contact, motion) -> None:

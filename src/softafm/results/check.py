@@ -18,6 +18,7 @@ from softafm.results.content import (
     REGULARISED,
     RISING,
     SAMPLES,
+    UNNUMBERED,
     Needed,
     unit_of,
 )
@@ -47,12 +48,17 @@ def refuse_unusable(attributes: Mapping[str, Any], variables: Variables) -> None
         _refuse_shape(name, dimensions, values, variables)
     wanted = dict(needed.variables)
     wanted |= PROFILES if any(name in variables for name in PROFILES) else {}
-    along = {each for dimensions in wanted.values() for each in dimensions if each != "jump"}
+    along = {
+        each for dimensions in wanted.values() for each in dimensions if each not in UNNUMBERED
+    }
     wanted |= {each: (each,) for each in sorted(along)}
     for name, dimensions in wanted.items():
         if name not in variables:
             raise ValueError(f"variable '{name}' is missing, which a result of mode '{mode}' holds")
         _refuse_variable(name, dimensions, variables, gaps=needed.gaps and name not in along)
+    for name in variables:
+        if name not in wanted and unit_of(name) is not None:
+            _refuse_values(name, variables[name][1], gaps=needed.gaps)
 
 
 def _refuse_experiment(mode: str, needed: Needed, attributes: Mapping[str, Any]) -> None:
@@ -147,10 +153,17 @@ def _refuse_variable(
     if not least <= values.size <= most:
         told = f"must have {least} to {most}"
         raise ValueError(f"variable '{name}' has {values.size} values: {told}")
-    if name == "branch":
+    if name == "branch" and dimensions == ("branch",):
         if sorted(map(str, values)) != sorted(BRANCHES):
             raise ValueError(f"variable 'branch' must hold {one_of(BRANCHES)}, each once")
         return
+    _refuse_values(name, values, gaps=gaps)
+    if name in RISING and not (np.diff(values) > 0).all():
+        raise ValueError(f"variable '{name}' must rise from value to value")
+
+
+def _refuse_values(name: str, values: np.ndarray, *, gaps: bool) -> None:
+    """Refuse values that are no numbers, or larger than what the unit of a known name allows."""
     if values.dtype.kind not in "fiu":
         raise ValueError(f"variable '{name}' holds {shown(values.dtype.name)}: must hold numbers")
     units = unit_of(name)
@@ -160,5 +173,3 @@ def _refuse_variable(
     if wrong.any():
         value = numbers[wrong][0]
         raise ValueError(f"variable '{name}' holds {value:g} {units}: must be within {largest:g}")
-    if name in RISING and not (np.diff(values) > 0).all():
-        raise ValueError(f"variable '{name}' must rise from value to value")

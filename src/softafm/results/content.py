@@ -1,4 +1,4 @@
-"""What results hold: every variable with its unit, and which of them each mode needs."""
+"""What results hold: every variable with its unit, and which of them each mode has."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -60,7 +60,10 @@ LARGEST = 2_000_000_000
 BRANCHES = ("attractive", "unstable", "repulsive")
 """The values of ``branch`` in an approach curve."""
 
-_RECORDED = ("force_max", "phase", "virial", "dissipation")
+_TAPPED = (
+    "virial", "dissipation", "force_mean", "force_max", "force_min", "contact_time", "indentation",
+)  # fmt: skip
+_RAMPED = ("force_max", "force_min", "force_min_approach", "loop_energy", "viscous_loss")
 _CURVES = ("tip_height", "force", "contact_radius", "axis_deformation", "viscous_power")
 _HISTORY: dict[str, tuple[str, ...]] = {
     **dict.fromkeys(_CURVES, ("time",)),
@@ -71,6 +74,8 @@ PROFILES: dict[str, tuple[str, ...]] = dict.fromkeys(
     ("deformation", "gap", "pressure"), ("time", "r")
 )
 """Dimensions of the shapes of the surface; a result holds all of them or none."""
+UNNUMBERED = ("jump", "cycle")
+"""Dimensions without a coordinate."""
 RISING = ("time", "r", "x", "y")
 """Coordinates whose values rise from each to the next."""
 SAMPLES = {
@@ -88,12 +93,12 @@ REGULARISED = ("regularised_range", "given_tabor", "given_range", "edge_slowed")
 
 @dataclass(frozen=True)
 class Needed:
-    """What the result of a mode must hold for figures, tables and exports to be made of it.
+    """What the result of a mode holds, for figures, tables and exports to be made of it.
 
     Parameters
     ----------
     variables
-        Dimensions of each; every dimension but ``jump`` has a coordinate of its name, too.
+        Dimensions of each; every dimension but ``UNNUMBERED`` has a coordinate of its name, too.
     described
         What the attribute ``experiment`` describes besides tip, sample and surface.
     numbers
@@ -108,39 +113,46 @@ class Needed:
     gaps: bool = False
 
 
+_RAMP = {**_HISTORY, **dict.fromkeys(_RAMPED, ())}
 NEEDED = {
-    "force-distance": Needed(_HISTORY),
-    "force-spectroscopy": Needed(
-        {**_HISTORY, "base_height": ("time",), "deflection": ("time",)}
-    ),
+    "force-distance": Needed(_RAMP),
+    "force-spectroscopy": Needed({**_RAMP, "base_height": ("time",), "deflection": ("time",)}),
     "tapping-cycle": Needed(
-        {**_HISTORY, **dict.fromkeys(("virial", "dissipation", "force_max"), ())}
+        {
+            **_HISTORY,
+            **dict.fromkeys((*_TAPPED, "force_min_approach", "viscous_loss", "cycles_run"), ()),
+            **dict.fromkeys(("cycle_virial", "cycle_dissipation"), ("cycle",)),
+        }
     ),
     "approach-curve": Needed(
         {
-            **dict.fromkeys(("mean_height", *_RECORDED), ("branch", "amplitude_ratio")),
+            **dict.fromkeys(("mean_height", "phase", *_TAPPED), ("branch", "amplitude_ratio")),
             **{
                 f"{direction}_{name}": ("sweep_height",)
                 for direction in _DIRECTIONS
-                for name in ("amplitude", *_RECORDED)
+                for name in ("amplitude", "phase", *_TAPPED)
             },
         },
         numbers=("solver_taps",),
         gaps=True,
     ),
     "amplitude-modulation": Needed(
-        dict.fromkeys(("topography", "phase", "dissipation"), ("y", "x")),
+        dict.fromkeys(
+            ("topography", "sample_height", "mean_height", "phase", "branch", *_TAPPED), ("y", "x")
+        ),
         described="imaging",
         numbers=("different_pixels",),
         gaps=True,
     ),
     "force-volume": Needed(
-        dict.fromkeys(("force_min", "loop_energy", "indentation"), ("y", "x")),
+        dict.fromkeys(
+            ("topography", "sample_height", "lowest_height", "indentation", *_RAMPED), ("y", "x")
+        ),
         described="imaging",
         numbers=("different_pixels",),
         gaps=True,
     ),
-}  # fmt: skip
+}
 """By mode."""
 
 

@@ -13,6 +13,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 import softafm
+from softafm.checks.kinds import refuse_non_dataset
+from softafm.checks.paths import why_no_file
 from softafm.results.content import FORMAT, LARGEST, variable
 from softafm.results.netcdf import file_content
 from softafm.solvers.history import History
@@ -43,11 +45,14 @@ def _assemble(
 
 
 def describe(thing) -> dict:
-    """Return the kind and the parameters (SI) of a tip, sample, law, motion, solver or stepper."""
+    """Return the kind and the parameters (SI) of a tip, sample, law, motion, solver or stepper.
+
+    Those of a class that is no dataclass are its ``description``; {} if it has none.
+    """
     if is_dataclass(thing):
         values = {f.name: _described(getattr(thing, f.name)) for f in fields(thing)}
     else:
-        values = thing.description
+        values = getattr(thing, "description", {})
     return {"kind": thing.kind, **values}
 
 
@@ -146,9 +151,10 @@ def edge_slowed(given, longer: float) -> float:
 
 def misfit_attributes(sample) -> dict[str, float]:
     """Return how well a sample fits the measured moduli it was fitted to; {} for all others."""
-    if sample.dma_misfit is None:
+    misfit = getattr(sample, "dma_misfit", None)
+    if misfit is None:
         return {}
-    return dict(zip(("dma_misfit_largest", "dma_misfit_rms"), sample.dma_misfit, strict=True))
+    return dict(zip(("dma_misfit_largest", "dma_misfit_rms"), misfit, strict=True))
 
 
 def _provenance(mode, contact, parts, solver, tolerance, warnings, diagnostics) -> dict:
@@ -182,11 +188,14 @@ def save(result: "Dataset", path, *, overwrite: bool = False) -> None:
 
     Raises
     ------
+    ValueError
+        If it is not an ``xarray.Dataset``.
     FileExistsError
         If the path exists and ``overwrite`` is False.
     OSError
         If the folder does not exist or cannot be written.
     """
+    refuse_non_dataset("result", result)
     # Formed in memory: on a full disk HDF5 itself may take the process down with it.
     content = file_content(result)
     write_whole(path, overwrite, lambda part: Path(part).write_bytes(content))
@@ -214,7 +223,7 @@ def load(path, *, largest: float = LARGEST) -> "Dataset":
     from softafm.results.files import read
 
     if not Path(path).is_file():
-        raise FileNotFoundError(f"{path}: no such file")
+        raise FileNotFoundError(f"{path}: {why_no_file(Path(path))}")
     try:
         return result_of(*read(str(path), int(largest)))
     except ValueError as problem:
@@ -241,7 +250,7 @@ def load_apart(path, *, largest: float = LARGEST, seconds: float | None = None) 
     from softafm.files.guard import read_apart, seconds_for
 
     if not Path(path).is_file():
-        raise FileNotFoundError(f"{path}: no such file")
+        raise FileNotFoundError(f"{path}: {why_no_file(Path(path))}")
     try:
         found = read_apart(
             "softafm.results.files:read",
@@ -298,16 +307,19 @@ def export(result: "Dataset", path, *, overwrite: bool = False) -> None:
     Raises
     ------
     ValueError
-        If the suffix is neither .csv nor .h5, or .csv for a map.
+        If the suffix is neither .csv nor .h5, or .csv for what has no curve, such as a map.
     FileExistsError, OSError
         As ``save``.
     """
+    refuse_non_dataset("result", result)
     suffix = Path(path).suffix.lower()
     if suffix == ".h5":
         save(result, path, overwrite=overwrite)
     elif suffix == ".csv":
         if {"x", "y"} <= set(result.dims):
             raise ValueError(f"{path}: maps have no CSV; take .h5, or export_gwyddion")
+        if not {"time", "sweep_height"} & set(result.dims) or "experiment" not in result.attrs:
+            raise ValueError(f"{path}: the dataset is not a result of softafm, so it has no curve")
         write_whole(path, overwrite, lambda part: _write_csv(result, part))
     else:
         raise ValueError(f"{path}: suffix {suffix!r} is not known, must be .csv or .h5")

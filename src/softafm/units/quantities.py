@@ -13,6 +13,8 @@ SMALLEST, LARGEST = 1e-40, 1e40
 """Magnitudes beyond these overflow or vanish when they are cubed, so they are refused."""
 
 _NUMBER = re.compile(r"[+-]?(?:(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]{1,3})?|nan|inf)")
+_THERMAL = re.compile(rf"({_NUMBER.pattern}) ?k_?[Bb]? ?T")
+_BOLTZMANN, _ROOM_TEMPERATURE = 1.380649e-23, 298.0
 _LONGEST_UNIT = 40
 _PREFIXES = {-18: "a", -15: "f", -12: "p", -9: "n", -6: "µ", -3: "m", 0: "", 3: "k", 6: "M", 9: "G"}
 _PREFIXED = {"m", "s", "N", "J", "Pa", "Hz", "m/s", "J/m²", "N/m"}
@@ -120,6 +122,12 @@ def read_quantity(written: object, kind: Kind) -> float:
         bare = isinstance(written, int | float) and not isinstance(written, bool)
         raise ValueError(f"must be {kind.valid}" + ("; the unit is missing" if bare else ""))
     text = " ".join(written.split())
+    if kind is ENERGY and (thermal := _THERMAL.fullmatch(text)):
+        joules = float(thermal[1]) * _BOLTZMANN * _ROOM_TEMPERATURE
+        raise ValueError(
+            f"must be {kind.valid}; the thermal energy kT depends on the temperature; did you mean "
+            f"'{joules:.4g} J', that at {_ROOM_TEMPERATURE:g} K?"
+        )
     try:
         return _read(text, kind)
     except ValueError as error:

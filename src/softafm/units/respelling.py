@@ -20,12 +20,30 @@ def respell(text: str, si: str) -> list[str]:
 
     An ambiguous one gives several, such as a comma that may group thousands; most give none.
     """
-    number = _NUMBER.match(text) if len(text) <= _LONGEST else None
+    joined = _joined(text)
+    number = _NUMBER.match(joined) if len(text) <= _LONGEST else None
     if number is None:
         return []
-    units = _units(text[number.end() :].strip(_AROUND), si)
+    units = _units(joined[number.end() :].strip(_AROUND), si)
     found = [f"{value} {unit}" for value in _numbers(*number.groups()) for unit in units]
     return [spelling for spelling in found if spelling != text]
+
+
+def respell_number(text: str) -> list[str]:
+    """Return plain numbers that are written nearly as ``text``, such as 0.49 for ``"0,49"``."""
+    number = _NUMBER.fullmatch(_joined(text)) if len(text) <= _LONGEST else None
+    if number is None:
+        return []
+    # As TOML has them: with digits on both sides of the point.
+    found = [re.sub(r"^([+-]?)\.", r"\g<1>0.", each) for each in _numbers(*number.groups())]
+    found = [re.sub(r"\.(?=e|$)", "", each) for each in found]
+    return [spelling for spelling in found if spelling != text]
+
+
+def _joined(text: str) -> str:
+    """Return a text without the spaces that group the thousands of its number."""
+    grouped = re.match(r"[+\-−]?\d{1,3}(?: \d{3})+(?!\d)", text)
+    return text if grouped is None else grouped[0].replace(" ", "") + text[grouped.end() :]
 
 
 def _numbers(digits: str, power: str | None, exponent: str | None) -> list[str]:

@@ -1,0 +1,74 @@
+"""Objects that are not what an argument is for: one line says what was given and what would be."""
+
+from collections.abc import Iterator, Sequence
+from inspect import Parameter, isroutine, signature
+from typing import Any
+
+from softafm.checks.refusals import all_of, shown
+
+SOLVER = ("kind", "adaptive", "solve")
+"""What a solver has; of the user's own, too."""
+SAMPLE = ("kind", "reduced_compliance")
+"""What a sample has, whatever its class."""
+MOTION = ("kind", "breaks", "landmarks", "top_speed", "height", "velocity", "compiled_height")
+"""What a motion has; of the user's own, too."""
+
+
+def refuse_other(name: str, value: Any, kind: type | tuple[type, ...], wanted: str) -> None:
+    """Raise ValueError if ``value`` is no instance of a class; ``wanted`` says in words of what."""
+    if not isinstance(value, kind):
+        raise ValueError(f"{name} = {_given(value)}: must be {wanted}{_call(value)}")
+
+
+def refuse_incomplete(name: str, value: Any, needed: Sequence[str], wanted: str) -> None:
+    """Raise ValueError if ``value`` is a class, or lacks one of the attributes ``needed``."""
+    # What stands in dir is not evaluated: a property may compile, or fail for its own reasons.
+    known = set() if isinstance(value, type) else set(dir(value))
+    missing = [each for each in needed if each not in known and not hasattr(value, each)]
+    if not missing and not isinstance(value, type):
+        return
+    lacks = f"; it has no {all_of(missing)}" if 0 < len(missing) < len(needed) else ""
+    raise ValueError(f"{name} = {_given(value)}: must be {wanted}{lacks}{_call(value)}")
+
+
+def refuse_non_dataset(name: str, value: Any) -> None:
+    """Raise ValueError if ``value`` is not an ``xarray.Dataset``, which all results are."""
+    from xarray import Dataset
+
+    refuse_other(name, value, Dataset, "a result of softafm, an xarray.Dataset")
+
+
+def list_of(name: str, value: Any, kind: type, wanted: str) -> list:
+    """Return one object of a class, or a sequence of such, as a list; else raise ValueError."""
+    if isinstance(value, kind):
+        return [value]
+    if isinstance(value, str | bytes) or not isinstance(value, Sequence | Iterator):
+        refuse_other(name, value, kind, f"{wanted}, or several in a list")
+    found = list(value)
+    for i, each in enumerate(found):
+        refuse_other(f"{name}[{i}]", each, kind, wanted)
+    return found
+
+
+def _callable(value: Any) -> bool:
+    return isinstance(value, type) or isroutine(value)
+
+
+def _given(value: Any) -> str:
+    """Return a value as the user would recognise it: of a function or class its name."""
+    if not _callable(value):
+        return " ".join(shown(value).split())
+    return f"<{'class' if isinstance(value, type) else 'function'} {value.__qualname__}>"
+
+
+def _call(value: Any) -> str:
+    """Say how to call a function or class that was given in place of what it makes."""
+    if not _callable(value):
+        return ""
+    room = "softafm.samples." if value.__module__ == "softafm.samples" else ""
+    try:
+        parameters = signature(value).parameters.values()
+    except (TypeError, ValueError):  # one that is not written in Python
+        return ""
+    needed = any(each.default is Parameter.empty for each in parameters)
+    return f"; call it: {room}{value.__qualname__}({'...' if needed else ''})"
