@@ -516,7 +516,7 @@ def test_whole_floats_count_cycles():
 
 
 @pytest.mark.filterwarnings("ignore::softafm.errors.DoubtfulValueWarning")
-@given(st.floats(-20, 20), st.floats(0, 20))
+@given(st.floats(-0.5, 0.5), st.floats(0, 0.5))
 def test_a_turn_above_the_start_is_refused(start, rise):
     message = refusal(sa.Triangle, start=start, turn=start + rise, speed=1.0)
     assert_one_line_naming("turn", message)

@@ -197,23 +197,30 @@ def test_files_without_a_profile_are_refused(tmp_path, text, message):
         tips.read_tip_profile(tmp_path / "none.csv")
 
 
+RISING = (0, 0.1, 0.2, 0.3)
+
+
 @pytest.mark.filterwarnings("ignore::softafm.errors.DoubtfulValueWarning")
 @pytest.mark.parametrize(
     ("r", "height", "message"),
     [
-        ((0, 1, 2), (0, 1, 2), r"^r has 3 entries: must have at least 4"),
-        ((0, 1, 2, 3), (0, 1, 2), r"^height has 3 entries: must have as many as r, 4"),
-        ((1, 2, 3, 4), (0, 1, 2, 3), r"^r\[0\] = 1 m: must be 0"),
-        ((0, 1, 1, 2), (0, 1, 2, 3), r"^r\[2\] = 1 m: must be above r\[1\] = 1 m"),
-        ((0, 2, 1, 3), (0, 1, 2, 3), r"^r\[2\] = 1 m: must be above r\[1\] = 2 m"),
-        ((0, 1, 2, 3), (0, 1, 0.5, 2), r"^height\[2\] = 0.5 m at r = 2 m: .* height\[1\] = 1 m"),
-        ((0, 1, 2, 3), (0, 1, nan, 2), r"^height\[2\] = nan m: must be a finite number"),
-        ((0, 1, inf, 3), (0, 1, 2, 3), r"^r\[2\] = inf m: must be a finite number"),
-        ((0, 1, 2, 3), (1, 1, 1, 1), r"^height = 1 m at all r: must rise"),
-        ((0, 1, 2, 3), (0, 1, 2, 2), r"^height\[3\] = 2 m: must be above the height before it"),
-        ((0, 1, 2, "3 nm"), (0, 1, 2, 3), r"^r\[3\] = '3 nm': must be a number in m"),
-        (None, (0, 1, 2, 3), r"^r = None: must be a list of numbers in m"),
-        ((0, 1, 2, 3), [[0, 1], [2, 3]], r"^height\[0\] = \[0, 1\]: must be a number in m"),
+        ((0, 0.1, 0.2), (0, 0.1, 0.2), r"^r has 3 entries: must have at least 4"),
+        (RISING, (0, 0.1, 0.2), r"^height has 3 entries: must have as many as r, 4"),
+        ((0.1, 0.2, 0.3, 0.4), RISING, r"^r\[0\] = 0.1 m: must be 0"),
+        ((0, 0.1, 0.1, 0.2), RISING, r"^r\[2\] = 0.1 m: must be above r\[1\] = 0.1 m"),
+        ((0, 0.2, 0.1, 0.3), RISING, r"^r\[2\] = 0.1 m: must be above r\[1\] = 0.2 m"),
+        (
+            RISING,
+            (0, 0.1, 0.05, 0.2),
+            r"^height\[2\] = 0.05 m at r = 0.2 m: .* height\[1\] = 0.1 m",
+        ),
+        (RISING, (0, 0.1, nan, 0.2), r"^height\[2\] = nan m: must be a finite number"),
+        ((0, 0.1, inf, 0.3), RISING, r"^r\[2\] = inf m: must be a finite number"),
+        (RISING, (0.1, 0.1, 0.1, 0.1), r"^height = 0.1 m at all r: must rise"),
+        (RISING, (0, 0.1, 0.2, 0.2), r"^height\[3\] = 0.2 m: must be above the height before it"),
+        ((0, 0.1, 0.2, "3 nm"), RISING, r"^r\[3\] = '3 nm': must be a number in m"),
+        (None, RISING, r"^r = None: must be a list of numbers in m"),
+        (RISING, [[0, 1], [2, 3]], r"^height\[0\] = \[0, 1\]: must be a number in m"),
     ],
 )
 def test_what_is_no_profile_is_refused(r, height, message):

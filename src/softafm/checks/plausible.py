@@ -25,7 +25,7 @@ _RANGES = {
     "J": _Range(0, 1e-9, 1e-3, "zJ", 1e-21),
     "J/m²": _Range(0, 10, 1e3, "mJ/m²", 1e-3),
     "V": _Range(0, 20, 1e4, "mV", 1e-3),
-    "Pa": _Range(1e-2, inf, inf, "GPa", 1e9),
+    "Pa": _Range(1e-6, inf, inf, "GPa", 1e9),
 }
 """By unit. Wide: colloidal probes, punches of millimetres and gels of a few pascals are plausible;
 the lenses of a surface forces apparatus, of centimetres, are possible."""
