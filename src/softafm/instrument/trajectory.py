@@ -4,7 +4,6 @@ from typing import ClassVar
 
 import numpy as np
 
-from softafm.checks.plausible import doubt
 from softafm.checks.validate import positive
 
 _CORNER = 0.1
@@ -242,8 +241,6 @@ def _samples(time, height) -> tuple[np.ndarray, np.ndarray]:
         raise ValueError(
             f"time[{i}] = {time[i]:g} s: must be later than time[{i - 1}] = {time[i - 1]:g} s"
         )
-    farthest = int(np.abs(height).argmax())
-    doubt(f"height[{farthest}]", float(height[farthest]), "m")
     return _read_only(time), _read_only(height)
 
 
