@@ -182,7 +182,8 @@ def load_document(path: str | Path) -> dict[str, Any]:
     try:
         refuse_result(path)
         if not path.is_file():
-            raise ConfigError([f"{name}: {'is a directory' if path.is_dir() else 'no such file'}"])
+            kind = "is a directory" if path.is_dir() else "is not a file"
+            raise ConfigError([f"{name}: {kind if path.exists() else 'no such file'}"])
         size = path.stat().st_size
         if size > LARGEST_FILE:
             raise ConfigError(

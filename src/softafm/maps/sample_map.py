@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from softafm.checks.validate import positive
+from softafm.checks.validate import positive, refuse_masked
 from softafm.contact import Contact
 
 _PARTS = ("sample", "surface")
@@ -256,6 +256,7 @@ def grey_values(image) -> np.ndarray:
 
 def _image(name: str, values) -> np.ndarray:
     """Return the values of all pixels as floats, or raise ValueError naming the one that is not."""
+    refuse_masked(name, values)
     try:
         array = np.array(values, float)
     except (TypeError, ValueError):
