@@ -1,5 +1,6 @@
 """Files of results: read as xarray reads them, and refused where they are not ours or not whole."""
 
+import csv
 import json
 import os
 
@@ -11,6 +12,7 @@ from result_samples import NAMES, results
 
 import softafm as sa
 from softafm.draw.summary import observables
+from softafm.files.measured import read_path
 from softafm.results import files as result_files
 from softafm.results.content import NEEDED, PROFILES
 
@@ -52,6 +54,20 @@ def test_every_mode_is_read_as_xarray_reads_it(path, name):
     assert {k: type(v) for k, v in ours.attrs.items()} == {
         k: type(v) for k, v in theirs.attrs.items()
     }
+
+
+def test_a_name_with_a_comma_is_one_column_of_an_export(path, tmp_path):
+    result = results()["force-distance"].copy()
+    for name, units in (('force, "raw"', "V"), ("drift", 'a, "b"')):
+        result[name] = ("time", np.arange(result.sizes["time"]) * 1.0, {"units": units})
+    sa.save(result, path)
+    sa.export(sa.load(path), tmp_path / "c.csv")
+    with open(tmp_path / "c.csv", newline="", encoding="utf-8") as file:
+        header, *rows = csv.reader(line for line in file if not line.startswith("#"))
+    assert header[-2:] == ['force, "raw" (V)', 'drift (a, "b")']
+    assert {len(row) for row in rows} == {len(header)}
+    heights = read_path(tmp_path / "c.csv")[1]
+    np.testing.assert_array_equal(heights, result["tip_height"])
 
 
 def test_what_a_user_adds_is_read_as_xarray_reads_it(path):

@@ -1,5 +1,6 @@
 """Tables in text files: what is read, and what is refused because it could mean two things."""
 
+import os
 import time
 
 import numpy as np
@@ -8,7 +9,9 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 import softafm as sa
-from softafm.files.measured import read_columns
+from softafm.checks.refusals import ConfigError
+from softafm.experiment.config import load_document
+from softafm.files.measured import read_columns, read_trajectory
 from softafm.files.tables import Table
 from softafm.units.quantities import FREQUENCY, LENGTH, MODULUS, TIME
 
@@ -56,6 +59,8 @@ def refusal(call, *arguments):
         "time\theight\tforce\n[us]\t[nm]\t[V]\n0\t0.5\t1\n1\t-2\t1\n2.5\t10\t1\n",
         "time (us),height\n,nm\n0,0.5\n1,-2\n2.5,10\n",
         "height (nm),note,Time (us),\n0.5,a,0,\n-2,\"b, c\",1,\n10,,2.5,,\n",
+        "sep=;\ntime (us);height (nm)\n0;0,5\n1;-2\n2,5;1e1\n",
+        "SEP=,\r\ntime (us),height (nm)\r\n0,0.5\r\n1,-2\r\n2.5,10",
         "time (us),height (nm)\r\n0,0.5\r\n1,-2\r\n2.5,10",
     ],
 )  # fmt: skip
@@ -184,6 +189,29 @@ def test_decimal_commas_make_no_other_tip(write):
     assert sa.read_tip_profile(write(text.format(";"))) == reference
     message = refusal(sa.read_tip_profile, write(text.format(",")))
     assert message.startswith("line 2 ('0,0,2') has 3 fields")
+
+
+def test_times_that_do_not_rise_are_refused_by_their_line(write):
+    path = write("# a record\n\ntime (us),height (nm)\n0,1\n# a gap\n2,1\n2,3\n")
+    message = refusal(read_trajectory, path)
+    assert message == "line 7 ('2,3'): 'time' must be later than in line 6 ('2,1')"
+
+
+def test_an_angle_is_asked_for_by_an_angle_and_refused_by_its_line(write):
+    header = "frequency (Hz),storage (MPa),delta"
+    message = refusal(sa.read_dma, write(f"{header}\n1,1,5\n10,2,6\n"))
+    assert message == "column 'delta' has no unit: it must be that of an angle, as in 'delta (deg)'"
+    message = refusal(sa.read_dma, write(f"{header} (deg)\n1,1,5\n10,2,95\n"))
+    assert message == "line 3 ('10,2,95'): delta = 95 deg: must be above 0 and below 90"
+
+
+def test_what_is_there_but_no_file_is_said_to_be_none(tmp_path):
+    pipe = tmp_path / "pipe"
+    os.mkfifo(pipe)
+    assert refusal(read_columns, pipe, COLUMNS, EXAMPLE) == "is not a file"
+    assert refusal(read_columns, tmp_path / "none", COLUMNS, EXAMPLE) == "no such file"
+    with pytest.raises(ConfigError, match=r"pipe: is not a file$"):
+        load_document(pipe)
 
 
 def test_any_encoding_but_utf_8_is_refused(tmp_path):

@@ -1,6 +1,7 @@
 """Motions given by samples: straight, smooth or measured, and rests that cost nothing."""
 
 import json
+import re
 from itertools import pairwise
 
 import numpy as np
@@ -305,6 +306,32 @@ def test_any_record_gives_a_motion(seed, samples, unevenness, jump):
 def test_no_record_is_refused(time, height, noise, message):
     with pytest.raises(ValueError, match=f"^{message}"):
         sa.Trajectory.from_measurement(time, height, noise)
+
+
+def masked(*values):
+    return np.ma.masked_values(values, -1.0)
+
+
+@pytest.mark.parametrize(
+    ("take", "entry"),
+    [
+        (lambda: sa.Trajectory(masked(0, 1, -1), [0, 1e-9, 0]), "time[2]"),
+        (lambda: sa.Trajectory([0, 1, 2], masked(0, -1, 0)), "height[1]"),
+        (lambda: sa.Trajectory.from_measurement(np.arange(30.0), masked(*[0] * 29, -1)), "height"),
+        (lambda: sa.MeasuredTip(masked(0, 1e-9, -1), (0, 1e-9, 2e-9)), "r[2]"),
+        (lambda: sa.Tabulated((1e-10, 2e-10), masked(1e6, -1)), "pressures[1]"),
+        (lambda: sa.GeneralizedMaxwell.from_dma(masked(1, -1), (1, 1), (1, 1), 0), "frequency[1]"),
+        (lambda: sa.Paraboloid(masked(-1)[0]), "radius"),
+        (lambda: CONTACT.sample.storage_modulus(masked(1, -1)), "frequency[1]"),
+    ],
+)  # fmt: skip
+def test_masked_entries_are_refused(take, entry):
+    with pytest.raises(ValueError, match=rf"^{re.escape(entry)}.* is masked: must be a number"):
+        take()
+
+
+def test_an_array_whose_mask_hides_nothing_is_taken():
+    assert sa.Trajectory(masked(0, 1), masked(2e-9, 1e-9)).height(1.0) == 1e-9
 
 
 def test_noise_taken_for_motion_is_doubtful():

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from softafm.checks.validate import positive
+from softafm.checks.validate import positive, refuse_masked
 
 if TYPE_CHECKING:
     from softafm.tips import Tip
@@ -184,6 +184,7 @@ def _work(value: float) -> float:
 
 
 def _not_negative(name: str, values) -> np.ndarray:
+    refuse_masked(name, values)
     array = np.asarray(values, float)
     bad = ~(np.isfinite(array) & (array >= 0))
     if np.any(bad):

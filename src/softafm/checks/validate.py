@@ -2,6 +2,8 @@
 
 from math import isfinite
 
+import numpy as np
+
 from softafm.checks.plausible import doubt
 
 
@@ -22,6 +24,7 @@ def finite(name: str, value: float, unit: str) -> float:
 
 
 def _number(name: str, value: float, unit: str) -> float:
+    refuse_masked(name, value)
     try:
         if isinstance(value, bool | str | bytes):
             raise TypeError
@@ -50,11 +53,21 @@ def numbers(name: str, values, unit: str) -> tuple[float, ...]:
     """Return the values as a tuple of finite floats, else raise ValueError naming the entry."""
     if isinstance(values, str | bytes | dict) or not hasattr(values, "__iter__"):
         raise ValueError(f"{name} = {values!r}: must be a list of numbers{_in(unit)}")
+    refuse_masked(name, values)
     found = tuple(_number(f"{name}[{i}]", value, unit) for i, value in enumerate(values))
     if found:
         largest = max(range(len(found)), key=lambda i: abs(found[i]))
         doubt(f"{name}[{largest}]", found[largest], unit)
     return found
+
+
+def refuse_masked(name: str, values) -> None:
+    """Raise ValueError if entries of an array are masked: NumPy would read through the mask."""
+    if not isinstance(values, np.ma.MaskedArray):
+        return
+    for index in np.argwhere(np.ma.getmaskarray(values)):
+        entry = f"{name}[{', '.join(map(str, index))}]" if index.size else name
+        raise ValueError(f"{entry} is masked: must be a number; leave masked entries out")
 
 
 def whole(name: str, value: int, least: int, most: int) -> int:

@@ -51,7 +51,8 @@ def read_path(path: str | Path, moves: Moves = "tip") -> tuple[np.ndarray, np.nd
     Raises
     ------
     ValueError
-        As ``Table``, its ``column`` and ``in_si``; if it has ``height`` and another of them.
+        As ``Table``, its ``column`` and ``in_si``; if it has ``height`` and another of them; if the
+        times do not rise.
     """
     if moves not in ("tip", "base"):
         raise ValueError(f"moves = {moves!r}: must be 'tip' or 'base'")
@@ -62,6 +63,8 @@ def read_path(path: str | Path, moves: Moves = "tip") -> tuple[np.ndarray, np.nd
         raise ValueError(f"has columns {titles}, any of which may be the motion; leave one")
     name = found[0].name if len(found) == 1 else f"{moves}_height" if found else "height"
     time = table.in_si(table.column("time"), TIME)
+    for row in np.flatnonzero(np.diff(time) <= 0).tolist():
+        raise ValueError(f"{table.place(row + 1)}: 'time' must be later than in {table.place(row)}")
     return time, table.in_si(table.column(name), LENGTH)
 
 

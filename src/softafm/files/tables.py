@@ -24,6 +24,8 @@ _WITH_COMMA = re.compile(r"[+-]?(?:[0-9]+,[0-9]*|,[0-9]+)(?:[eE][+-]?[0-9]+)?")
 _THOUSANDS = re.compile(r"[+-]?[1-9][0-9]{0,2},[0-9]{3}")
 _NAME_AND_UNIT = re.compile(r"(.*?\S)\s*[(\[]([^()\[\]]*)[)\]]|([^/]+)/(.+)")
 _TITLE_BETWEEN_BLANKS = re.compile(r"[^\s(\[]\S*(?:\s*[(\[][^)\]]{0,40}[)\]])?")
+_DECLARED = re.compile(r'"?sep=([,;\t])"?[,;\s]*', re.IGNORECASE)
+"""The line by which Excel is told what separates columns."""
 _PRIMES = str.maketrans({"′": "'", "’": "'", "″": "''", '"': "''"})
 _SEPARATORS = {",": "','", ";": "';'", "\t": "tabs", " ": "blanks"}
 
@@ -59,6 +61,9 @@ class Table:
     def __init__(self, path: str | Path, example: str):
         self.example = example
         self._lines = _text(Path(path)).split("\n")
+        declared = _DECLARED.fullmatch(self._lines[0])
+        if declared:
+            self._lines[0] = ""
         data = [
             number
             for number, line in enumerate(self._lines, start=1)
@@ -70,7 +75,7 @@ class Table:
         if self._header_line == data[0]:
             del data[0]
         header = self._lines[self._header_line - 1].lstrip("# ")
-        self.separator = _separator(header)
+        self.separator = declared[1] if declared else _separator(header)
         (titles,) = self._split([header], [self._header_line])
         while titles and not titles[-1]:
             del titles[-1]
@@ -115,7 +120,7 @@ class Table:
         if not column.unit:
             raise ValueError(
                 f"column {shown(column.name)} has no unit: it must be that of {kind.noun}, as in "
-                f"'{self.example}'"
+                f"'{column.name} ({kind.example.split(maxsplit=1)[1]})'"
             )
         try:
             factor = read_quantity(f"1 {column.unit}", kind)
@@ -141,6 +146,11 @@ class Table:
             cells = [(n, cell.replace(",", ".") if _WITH_COMMA.fullmatch(cell) else cell)
                      for n, cell in cells]  # fmt: skip
         return np.array([self._number(n, cell, column) for n, cell in cells], float)
+
+    def place(self, row: int) -> str:
+        """Return which line of the file a row of numbers, counted from 0, is, and what it reads."""
+        line = self._rows[row][0]
+        return f"line {line} ({shown(self._lines[line - 1].strip())})"
 
     def _number(self, line: int, cell: str, column: Column) -> float:
         number = float(cell) if _NUMBER.fullmatch(cell) else None

@@ -4,7 +4,7 @@ from typing import ClassVar
 
 import numpy as np
 
-from softafm.checks.validate import positive
+from softafm.checks.validate import positive, refuse_masked
 
 _CORNER = 0.1
 """Change of velocity, over its largest magnitude, that makes a sample a corner."""
@@ -246,6 +246,7 @@ def _samples(time, height) -> tuple[np.ndarray, np.ndarray]:
 
 def as_numbers(name: str, values) -> np.ndarray:
     """Return a copy of ``values`` as an array of floats, or raise ValueError naming them."""
+    refuse_masked(name, values)
     try:
         return np.array(values, float)
     except (TypeError, ValueError):

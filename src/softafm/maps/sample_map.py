@@ -9,7 +9,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from softafm.checks.kinds import list_of, refuse_other
-from softafm.checks.validate import positive
+from softafm.checks.validate import positive, refuse_masked
 from softafm.contact import Contact
 
 _PARTS = ("sample", "surface")
@@ -258,6 +258,7 @@ def grey_values(image) -> np.ndarray:
 
 def _image(name: str, values) -> np.ndarray:
     """Return the values of all pixels as floats, or raise ValueError naming the one that is not."""
+    refuse_masked(name, values)
     try:
         array = np.array(values, float)
     except (TypeError, ValueError):

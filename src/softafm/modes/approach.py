@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from softafm.checks.gathering import Placed, collect_warnings, gather
-from softafm.checks.validate import finite, positive, tolerance_of
+from softafm.checks.validate import finite, positive, refuse_masked, tolerance_of
 from softafm.contact import Contact
 from softafm.errors import AccuracyWarning
 from softafm.instrument.cantilever import Cantilever
@@ -267,6 +267,7 @@ def _tables(curve: AmplitudeCurve, ratios, found: Solutions):
 
 def _ratios(values) -> np.ndarray:
     """Return amplitude ratios as an array, or raise ValueError naming the one that is not."""
+    refuse_masked("amplitude_ratio", values)
     try:
         if isinstance(values, str | bytes):
             raise TypeError

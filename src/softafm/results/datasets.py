@@ -1,5 +1,6 @@
 """Results as xarray datasets: names, units, provenance, saving, loading, export."""
 
+import csv
 import inspect
 import json
 import os
@@ -332,12 +333,12 @@ def _write_csv(result, path):
     scalars = [v for v in numbers if v.dims == ()]
     header = [f"{v.name} = {float(v):.9g} {v.units}" for v in scalars]
     header += [f"experiment = {result.attrs['experiment']}"]
-    names = ",".join(f"{v.name} ({v.units})" for v in curves)
+    names = [f"{v.name} ({v.units})" for v in curves]
     # To the last digit: steps of a fall may be closer than nine digits tell apart.
     rows = np.column_stack(curves).tolist()
     with open(path, "w", encoding="utf-8") as out:
         out.writelines(f"# {line}\n" for line in header)
-        out.write(f"{names}\n")
+        csv.writer(out, lineterminator="\n").writerow(names)
         out.writelines(",".join(map(repr, row)) + "\n" for row in rows)
 
 

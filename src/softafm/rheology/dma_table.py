@@ -147,20 +147,22 @@ def _tangent(table: Table) -> np.ndarray | None:
                 f"column {shown(column.title)} must have no unit, not {shown(column.unit)}"
             )
         tangent = table.numbers(column)
-        _refuse(column.name, tangent, "", tangent > 0, "above 0")
+        _refuse(table, column.name, tangent, "", tangent > 0, "above 0")
         return tangent
     column = table.find(*_PHASE)
     if column is None:
         return None
     angle = table.in_si(column, ANGLE)
     sharp = (angle > 0) & (angle < pi / 2)
-    _refuse(column.name, np.degrees(angle), " deg", sharp, "above 0 and below 90")
+    _refuse(table, column.name, np.degrees(angle), " deg", sharp, "above 0 and below 90")
     return np.tan(angle)
 
 
-def _refuse(name: str, values: np.ndarray, unit: str, valid: np.ndarray, words: str) -> None:
-    for index in np.flatnonzero(~valid):
-        raise ValueError(f"{name}[{index}] = {values[index]:g}{unit}: must be {words}")
+def _refuse(
+    table: Table, name: str, values: np.ndarray, unit: str, valid: np.ndarray, words: str
+) -> None:
+    for row in np.flatnonzero(~valid).tolist():
+        raise ValueError(f"{table.place(row)}: {name} = {values[row]:g}{unit}: must be {words}")
 
 
 def _frequency(table: Table) -> np.ndarray:

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from softafm.checks.validate import numbers
+from softafm.checks.validate import numbers, refuse_masked
 
 
 def positives(name: str, values, unit: str, *, zeros: bool = False) -> tuple[float, ...]:
@@ -27,6 +27,7 @@ def as_many(name: str, values: tuple, as_name: str, as_values: tuple) -> None:
 
 def samples(name: str, values, unit: str, least: float | None = None) -> np.ndarray:
     """Return numbers as an array of floats if all are above zero, or at least ``least``."""
+    refuse_masked(name, values)
     try:
         array = np.asarray(values, float)
     except (TypeError, ValueError):
