@@ -34,7 +34,10 @@ WITH_FILES = {
     "motion.csv": "time (us),height (nm)\n0,5\n1,3\n2,1.5\n3,3\n4,5\n",
     "curve.csv": "time (us),tip_height (nm),base_height (nm)\n0,5,5\n1,2,1.5\n2,5,5\n",
     "record.csv": "time (us),height (nm)\n"
-    + "".join(f"{k},{1.5 + abs(k - 20) / 5 + (-1) ** k / 50:.3f}\n" for k in range(41)),
+    + "".join(
+        f"{k},{1.5 + abs(k - 20) / 5 + noise:.3f}\n"
+        for k, noise in enumerate(np.random.default_rng(1).normal(0, 0.02, 41))
+    ),
 }
 
 DOCUMENTS = {

@@ -208,9 +208,9 @@ def test_an_angle_is_asked_for_by_an_angle_and_refused_by_its_line(write):
 def test_what_is_there_but_no_file_is_said_to_be_none(tmp_path):
     pipe = tmp_path / "pipe"
     os.mkfifo(pipe)
-    assert refusal(read_columns, pipe, COLUMNS, EXAMPLE) == "is not a file"
+    assert refusal(read_columns, pipe, COLUMNS, EXAMPLE) == "is not a regular file"
     assert refusal(read_columns, tmp_path / "none", COLUMNS, EXAMPLE) == "no such file"
-    with pytest.raises(ConfigError, match=r"pipe: is not a file$"):
+    with pytest.raises(ConfigError, match=r"pipe: is not a regular file$"):
         load_document(pipe)
 
 
