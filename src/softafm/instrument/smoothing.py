@@ -228,7 +228,10 @@ def _crossings(t: np.ndarray, curves: "list[BSpline]", bounds: np.ndarray) -> np
                 break
         else:
             moved[i] = at
-    return moved
+    # Where few samples lie between corners, crossings may leave too few for a curve.
+    samples = np.diff(np.searchsorted(t, moved))
+    kept = np.all(np.diff(moved) > 0) and np.all(samples >= _NEAREST)
+    return moved if kept else bounds
 
 
 def _join(curves: "list[BSpline]", bounds: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
