@@ -235,3 +235,14 @@ def test_documents_install_a_copy_of_the_repository_as_it_is_not_published():
         assert all(target.startswith(".") for target in targets), name
     for name in ("README.md", "index.md", "page.md"):
         assert "not on PyPI" in texts[name]
+
+
+def test_a_motion_of_a_plain_class_is_the_same_path_by_points(extending):
+    motion = extending.landing
+    contact = sa.Contact(sa.Paraboloid(10e-9), SAMPLE, sa.LennardJones(1e-19, 0.3e-9))
+    time = np.linspace(0, motion.breaks[-1], 4001)
+    path = sa.Trajectory(time, motion.height(time), smooth=True)
+    one, two = (sa.force_distance(contact, each, tolerance=1e-3) for each in (motion, path))
+    for name in ("force_min", "force_max", "loop_energy"):
+        assert float(one[name]) == pytest.approx(float(two[name]), rel=2e-3)
+    assert json.loads(one.attrs["experiment"])["motion"]["decay"] == 1e-4

@@ -6,12 +6,13 @@ from typing import Any
 
 from softafm.checks.refusals import all_of, shown
 
-SOLVER = ("kind", "adaptive", "solve")
-"""What a solver has; of the user's own, too."""
 SAMPLE = ("kind", "reduced_compliance")
 """What a sample has, whatever its class."""
-MOTION = ("kind", "breaks", "landmarks", "top_speed", "height", "velocity", "compiled_height")
-"""What a motion has; of the user's own, too."""
+
+
+def members(protocol: type) -> tuple[str, ...]:
+    """Return the names that a protocol asks for, in the order in which it states them."""
+    return tuple(name for name in vars(protocol) if not name.startswith("_"))
 
 
 def refuse_other(name: str, value: Any, kind: type | tuple[type, ...], wanted: str) -> None:

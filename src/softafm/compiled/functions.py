@@ -181,8 +181,16 @@ def pointer(signature: Any) -> types.FunctionType:
 
 
 def compiled(signature: Any) -> Callable[[Callable], CompiledFunction]:
-    """Decorate a function, to be compiled for ``signature`` when it is first used."""
-    return lambda function: CompiledFunction(function, signature)
+    """Decorate a function, to be compiled for ``signature`` when it is first used.
+
+    One of this package is kept on disk; a user's is compiled anew in every process.
+    """
+
+    def compile_later(function: Callable) -> CompiledFunction:
+        on_disk = store.is_ours(function.__code__.co_filename)
+        return CompiledFunction(function, signature, on_disk)
+
+    return compile_later
 
 
 @cache

@@ -13,6 +13,7 @@ from softafm.contact import Contact
 from softafm.experiment import schema
 from softafm.experiment.takers import refuse_result, refuse_unless
 from softafm.experiment.toml_text import parse
+from softafm.instrument.motion import is_steady
 from softafm.modes.check import finer_run
 from softafm.modes.force_distance import ramp_observables
 from softafm.modes.start import carry, refuse_start_inside, refuse_unable, regularised
@@ -349,7 +350,7 @@ def _refuse_flow(contact: Contact, mode: Any, motion: Any, written: dict) -> Non
                 "the tip sinks deeper with every cycle"
             ]
         )
-    if getattr(motion, "steady", False):
+    if is_steady(motion):
         given = "'steady'" if "cycles" in written else "missing"
         raise ConfigError(
             [

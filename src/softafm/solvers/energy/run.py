@@ -8,6 +8,7 @@ import numpy as np
 
 from softafm.errors import AccuracyWarning, DivergedError
 from softafm.instrument.compiled_motions import still
+from softafm.instrument.motion import bound_speed, count_periods, find_setpoint
 from softafm.solvers.energy.layout import (
     DEFORMATION,
     FALL,
@@ -150,13 +151,12 @@ class Run:
 
     def _trigger(self, stop) -> float:
         """Return the force that turns the ramp before ``stop``, N."""
-        force = getattr(self.motion, "setpoint_force", None)
+        force = find_setpoint(self.motion)
         return np.inf if force is None or stop > self.breaks[1] else force
 
     def _top_speed(self, stop) -> float:
-        """Return how fast the motion gets until ``stop``, m/s, if it tells."""
-        between = getattr(self.motion, "top_speed_between", None)
-        return self.motion.top_speed if between is None else between(self.surface.time, stop)
+        """Return how fast the motion gets until ``stop``, m/s."""
+        return bound_speed(self.motion, self.surface.time, stop)
 
     def _turn(self):
         """Let the ramp turn now, its force having been reached."""
@@ -313,7 +313,7 @@ class Run:
                 "most_nodes": surface.most_nodes,
                 "finest_spacing": surface.finest_spacing,
                 "growth": surface.growth,
-                "cycles": max(self.cycle, getattr(self.motion, "periods", 1)),
+                "cycles": max(self.cycle, count_periods(self.motion)),
                 "wall_time": seconds,
             },
             warnings=self._warnings(),

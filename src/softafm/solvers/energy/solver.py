@@ -7,6 +7,7 @@ from typing import ClassVar
 
 from softafm.checks.validate import finite, positive
 from softafm.compiled.announce import announced_compilation
+from softafm.instrument.motion import count_periods, is_steady
 from softafm.instrument.motions import lowest_height
 from softafm.solvers.history import History
 
@@ -76,7 +77,7 @@ class Energy:
             from softafm.solvers.energy.run import Run
 
             run = Run(self, contact, motion, stiffness or 0.0, tolerance, profiles)
-        for fraction in run.cycles() if getattr(motion, "steady", False) else run.steps():
+        for fraction in run.cycles() if is_steady(motion) else run.steps():
             if progress is not None:
                 progress(fraction, f"{fraction:.0%} of the motion")
         history = run.history(perf_counter() - started)
@@ -86,7 +87,7 @@ class Energy:
 
     def expected_seconds(self, contact, motion) -> float:
         """Order of magnitude of a run at the default tolerance, s on one core, as measured."""
-        cycles = getattr(motion, "periods", 1)
+        cycles = count_periods(motion)
         return 4e-3 * cycles + 2e-5 * cohesive_lengths_crossed(contact, motion)
 
 
@@ -100,8 +101,8 @@ def cohesive_lengths_crossed(contact, motion) -> float:
         return 0.0
     law, radius = contact.surface, contact.contact_radius(lowest_height(motion))
     modulus = contact.softened_modulus
-    if not getattr(motion, "steady", False):
+    if not is_steady(motion):
         duration = float(motion.breaks[-1] - motion.breaks[0])
         modulus = max(modulus, 1 / float(contact.sample.reduced_compliance.at(duration)))
     length = modulus * law.range**2 / law.work_of_adhesion
-    return 2 * radius / length * getattr(motion, "periods", 1)
+    return 2 * radius / length * count_periods(motion)

@@ -10,6 +10,7 @@ import numpy as np
 
 from softafm.errors import AccuracyWarning, DivergedError
 from softafm.halfspace.mesh import beyond
+from softafm.instrument.motion import count_periods, is_steady
 from softafm.instrument.motions import lowest_height
 from softafm.solvers.history import History, Profiles
 from softafm.solvers.paper import kernel as k
@@ -92,7 +93,7 @@ def march(
         iteration or Iteration(),
         profiles,
     )
-    for fraction in run.cycles(tolerance) if getattr(motion, "steady", False) else run.steps():
+    for fraction in run.cycles(tolerance) if is_steady(motion) else run.steps():
         if progress is not None:
             progress(fraction, f"{fraction:.0%} of the motion")
     history = run.history(perf_counter() - started)
@@ -233,7 +234,7 @@ class _Run:
                 "rates": int(self.counters[k.RATES]),
                 "iterations": int(self.counters[k.ITERATIONS]),
                 "rates_beyond_fold": int(self.counters[k.BEYOND_FOLD]),
-                "cycles": max(self.cycle, getattr(self.motion, "periods", 1)),
+                "cycles": max(self.cycle, count_periods(self.motion)),
                 "wall_time": seconds,
             },
             warnings=tuple(self._warnings(records)),
