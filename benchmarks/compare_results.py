@@ -13,6 +13,7 @@ import subprocess
 import sys
 import warnings
 from collections.abc import Callable, Iterator
+from functools import partial
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
@@ -25,8 +26,8 @@ import softafm as sa
 
 ROOT = Path(__file__).parents[1]
 ALLOWED = 1e-9
-CONTACTS = 30
-"""How many random contacts are run."""
+CONTACTS, MOST_STEPS = 30, 2000
+"""How many random contacts are run, and how many steps each may try."""
 
 
 def polyethylene(creep_time: float = 1e-7) -> sa.Contact:
@@ -71,9 +72,11 @@ MODES: dict[str, Callable[[], Any]] = {
 def all_runs() -> Iterator[tuple[str, Callable[[], Any]]]:
     """Yield the name of every run and a function that does it."""
     for name, case in reference_cases().items():
-        yield name, lambda case=case: run(case)
+        yield name, partial(run, case)
+    solver = sa.solvers.Energy(most_steps=MOST_STEPS)
     for seed in range(CONTACTS):
-        yield f"random contact {seed}", lambda seed=seed: sa.force_distance(*random_contact(seed))
+        contact, ramp = random_contact(seed)
+        yield f"random contact {seed}", partial(sa.force_distance, contact, ramp, solver=solver)
     yield from MODES.items()
 
 
