@@ -58,7 +58,7 @@ def test_an_approach_curve_gives_arrays_over_branch_and_ratio():
     assert phase.unit == "degree"
     assert found.coordinates["amplitude_ratio"][1].tolist() == [0.8, 0.5]
     told = refused({"vary": {"motion.amplitude_ratio": [[0.8], [0.5]]}}, document)
-    assert told.startswith("sweep.vary.'motion.amplitude_ratio': the results of every run lie over branch")
+    assert told.startswith("sweep.vary.'motion.amplitude_ratio': the results of every run lie over")
 
 
 def test_a_file_of_a_campaign_is_read(tmp_path):
