@@ -2,7 +2,8 @@
 
 import pytest
 
-from softafm.app.form import MODES, Alternatives, section, tables
+from softafm.app.form import Alternatives, section, tables
+from softafm.modes import MODES
 
 FOCUSED = """() => {
   let at = document.activeElement;
@@ -44,7 +45,7 @@ def rounds(mode):
     What a tip, sample, surface and solver may be does not depend on the mode.
     """
     offered = {table: section(table, None, mode).choices for table in tables(mode)}
-    for table in ("tip", "sample", "surface", "solver") if mode != MODES[0] else ():
+    for table in ("tip", "sample", "surface", "solver") if mode != "force-distance" else ():
         offered[table] = offered[table][:1]
     for index in range(max(map(len, offered.values()))):
         chosen = {table: names[min(index, len(names) - 1)] for table, names in offered.items()}

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 from softafm.app.answers import added, chosen, moded, taken
 from softafm.app.documents import ordered, read_text, value_at, with_value, without, written_text
-from softafm.app.form import MODES, Alternatives, Field, preset_titles, presets, section, tables
+from softafm.app.form import Alternatives, Field, preset_titles, presets, section, tables
 from softafm.app.marks import MISSING, placed, with_missing
 from softafm.app.outlook import cost, outlook, problems, summary
 from softafm.app.plan import plan_of, shown_sections
@@ -17,6 +17,7 @@ from softafm.app.uploads import keep
 from softafm.experiment import schema
 from softafm.experiment.config import example_names, experiment_from
 from softafm.experiment.regime import expected_seconds, regime
+from softafm.modes import MODES
 
 HERE = Path()
 TAP = presets()["ldpe-tapping"]
@@ -53,9 +54,9 @@ def test_the_form_offers_what_the_schema_knows():
         for choice, made in choices.items():
             fields = section(table, choice, "force-distance").fields
             assert set(fields) == set(made.model_fields)
-    for mode, shapes in schema.MOTIONS.items():
-        assert section("motion", None, mode).choices == tuple(shapes)
-        assert ("cantilever" in tables(mode)) == (mode in schema.CANTILEVERS)
+    for name, mode in MODES.items():
+        assert section("motion", None, name).choices == tuple(schema.motions_of(mode))
+        assert ("cantilever" in tables(name)) == (schema.cantilever_of(mode) is not None)
     assert "sum" not in section("surface.parts", None, "force-distance").choices
 
 

@@ -23,6 +23,7 @@ from bokeh.plotting import figure as new_figure
 from softafm.app.colours import Theme, in_role, recolour
 from softafm.app.curve_data import AXES, Parts, parts_of
 from softafm.draw import histories
+from softafm.modes import MODES
 from softafm.units.quantities import prefixed
 
 if TYPE_CHECKING:
@@ -133,8 +134,9 @@ def _drawn(shown: Shown, parts: Parts, units: dict[str, tuple[float, str]]) -> _
 
 def _window(results: Sequence["Dataset"], abscissa: str) -> tuple[float, float]:
     """Return the stretch of the abscissa to begin with, SI: all, or where there is a force."""
-    whole = abscissa not in histories.AXES
-    if whole or any(result.attrs.get("mode") == "force-distance" for result in results):
+    known = [MODES.get(str(result.attrs.get("mode"))) for result in results]
+    whole = any(mode is not None and not mode.figure.cropped for mode in known)
+    if whole or abscissa not in histories.AXES:
         return -inf, inf
     return histories.felt(results, abscissa)
 

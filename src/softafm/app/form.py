@@ -10,9 +10,8 @@ from softafm.app.help_texts import help_of, summary_of
 from softafm.experiment import schema
 from softafm.experiment.config import document_from, example_names, example_text
 from softafm.experiment.entries import Input
+from softafm.modes import MODES
 from softafm.units.quantities import prefixed
-
-MODES = tuple(schema.MOTIONS)
 
 _SYMBOLS = {
     "E0": "E₀", "E1": "E₁", "E_inf": "E∞", "G0": "G₀", "G_inf": "G∞", "z0": "z₀",
@@ -109,7 +108,8 @@ def preset_titles() -> dict[str, str]:
 
 def tables(mode: object) -> tuple[str, ...]:
     """Return the tables that a mode has, in the order of the form and of a file."""
-    lever = ("cantilever",) if str(mode) in schema.CANTILEVERS else ()
+    known = MODES.get(str(mode))
+    lever = ("cantilever",) if known is not None and known.lever else ()
     return ("tip", "sample", "surface", *lever, "motion", "solver", "run")
 
 
@@ -134,9 +134,11 @@ def _choices(table: str, mode: object) -> tuple[str, Mapping[str, type[schema.Ta
     if table == "run":
         return "", {"": schema.Run}
     if table == "cantilever":
-        return "", {"": schema.CANTILEVERS[str(mode)]}
+        made = schema.cantilever_of(MODES[str(mode)])
+        return "", {} if made is None else {"": made}
     if table == "motion":
-        return "shape", schema.MOTIONS.get(str(mode), {})
+        known = MODES.get(str(mode))
+        return "shape", {} if known is None else schema.motions_of(known)
     chooser, choices = schema.CHOICES[table.partition(".")[0]]
     if table == "surface.parts":
         choices = {name: law for name, law in choices.items() if law is not schema.SumSurface}

@@ -26,6 +26,7 @@ from softafm.app.tables import regime_table
 from softafm.app.views import views
 from softafm.app.widgets import Form
 from softafm.checks.refusals import ConfigError
+from softafm.modes import MODES
 
 FIRST = "ldpe-tapping"
 _REGIME = "Regime"
@@ -160,7 +161,8 @@ class Page(pn.viewable.Viewer):
 
     @property
     def _can_film(self) -> bool:
-        return self.form.document.get("mode") != "approach-curve"
+        mode = MODES.get(str(self.form.document.get("mode")))
+        return mode is None or mode.takes_profiles
 
     def _name(self) -> str:
         same = (name for name, found in presets().items() if found == self.form.document)

@@ -6,7 +6,6 @@ from typing import Any, NamedTuple
 
 from softafm.app.documents import value_at
 from softafm.app.form import (
-    MODES,
     Alternatives,
     Field,
     Section,
@@ -14,6 +13,7 @@ from softafm.app.form import (
     section,
     tables,
 )
+from softafm.modes import MODES
 
 _ADVANCED = ("solver", "run")
 
@@ -98,7 +98,7 @@ def plan_of(shown: list[Shown], largest_upload: int) -> dict[str, Any]:
     """Return what the browser needs to draw the form, whatever its fields hold."""
     return {
         "largest": largest_upload,
-        "modes": MODES,
+        "modes": tuple(MODES),
         "presets": list(preset_titles().items()),
         "sections": [_section(one) for one in shown],
     }

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, Literal
 
 from softafm.app.links import from_query, to_query
 from softafm.app.python_lines import python_lines
-from softafm.experiment.schema import MOTIONS
+from softafm.modes import MODES
 
 if TYPE_CHECKING:
     from xarray import Dataset
@@ -36,8 +36,8 @@ def toml_text(document: Mapping[str, Any]) -> str:
 
 def file_name(document: Mapping[str, Any]) -> str:
     """Return the name under which the page offers a document's experiment file."""
-    mode = document.get("mode")
-    return f"{mode if mode in list(MOTIONS) else 'experiment'}.toml"
+    mode = str(document.get("mode"))
+    return f"{mode if mode in MODES else 'experiment'}.toml"
 
 
 def command_line(document: Mapping[str, Any]) -> str:

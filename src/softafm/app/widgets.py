@@ -17,13 +17,14 @@ import param
 
 from softafm.app.answers import added, chosen, moded, taken
 from softafm.app.documents import ordered, read_text, value_at, with_value, without, written_text
-from softafm.app.form import MODES, presets
+from softafm.app.form import presets
 from softafm.app.marks import placed, with_missing
 from softafm.app.outlook import Outlook, outlook
 from softafm.app.plan import Shown, plan_of, shown_sections
 from softafm.app.readings import MeasuredFiles
 from softafm.app.uploads import keep
 from softafm.experiment.entries import files_read_by
+from softafm.modes import MODES
 
 _LONGEST_TEXT = 20_000
 
@@ -247,7 +248,7 @@ class Form(pn.viewable.Viewer):
         at, self._elsewhere = placed(self.problems, self._shown)
         mode = self.document.get("mode")
         return {
-            "mode": mode if mode in MODES else "",
+            "mode": mode if mode in list(MODES) else "",
             "preset": next((n for n, d in self._presets.items() if d == self.document), ""),
             "texts": {path: self._text(path) for path in self._inputs},
             "problems": at if self.show_problems else {},

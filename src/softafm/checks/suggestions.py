@@ -47,11 +47,7 @@ _OTHER_WORDS = {
     "setpoint": "amplituderatio ratio",
     "dwell": "hold holdtime wait pause",
     "tolerance": "tol accuracy error",
-    # modes
-    "force-distance": "forcecurve fd indentation",
-    "force-spectroscopy": "forcecurve fz",
-    "tapping-cycle": "tapping am amplitudemodulation",
-    "approach-curve": "apd amplitudecurve dynamicspectroscopy",
+    # modes of maps
     "tapping-map": "tapping am amplitudemodulation",
     "force-volume": "forcemap",
     # choices
@@ -84,6 +80,11 @@ _LIMITS = {
     **dict.fromkeys(("hertz", "hertzian"), ("Hertz", "a law without adhesion, 'repulsion'")),
 }
 """Theories of contact that are taken for laws, and of what they are the limit."""
+
+
+def call_also(name: str, words: str) -> None:
+    """Add other words for a name, in small letters without hyphens, separated by spaces."""
+    _OTHER_WORDS[name] = words
 
 
 def limit(given: str) -> str:

@@ -19,6 +19,13 @@ AXES = {
 """Title and unit of the axis of a variable."""
 
 
+def axis_of(run: "Dataset", name: str) -> tuple[str, str]:
+    """Return title and unit of the axis of any variable of a result."""
+    described = run[name].attrs
+    words, unit = str(described.get("long_name", name)), str(described.get("units", "1"))
+    return AXES.get(name, (words[:1].upper() + words[1:], unit))
+
+
 def moved(run: "Dataset") -> str:
     """Return what follows the motion: the base of a lever, or else the tip."""
     return "base_height" if "base_height" in run else "tip_height"

@@ -1,15 +1,15 @@
 """What an experiment is before it runs, and what it will cost: numbers, and a table for people."""
 
 from math import isfinite, log10
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from rich.table import Table
 
 from softafm.draw.summary import misfit_in_words, regularised_in_words, slowed_in_words, table_of
 from softafm.instrument.motions import lowest_height
-from softafm.modes.approach import deepest_tap, drive_of
-from softafm.modes.start import regularised
+from softafm.modes import MODES, Foreseen, Row
+from softafm.modes.start import regularise_contact
 from softafm.results.datasets import edge_slowed
 from softafm.rheology.represented import Represented
 from softafm.solvers.energy import Energy, cohesive_lengths_crossed
@@ -19,11 +19,9 @@ from softafm.units.quantities import readable
 if TYPE_CHECKING:
     from softafm.contact import Contact
     from softafm.experiment.config import Experiment
-    from softafm.instrument.oscillator import Drive
 
-_TAPS, _CHECKED, _TENTH = 130, 4, 2.8
-"""By experience: taps of an approach curve, runs that one with its check is worth, and one with a
-tenth of the tolerance."""
+_CHECKED, _TENTH = 4, 2.8
+"""By experience: runs that one with its check is worth, and one with a tenth of the tolerance."""
 _USUAL = 1e-2
 """Tolerance for which solvers tell what to expect."""
 _FLOWS = "flows"
@@ -31,22 +29,6 @@ _SOFT, _ADVISED = 30, 8
 """Tabor number from which on another is advised."""
 _FEW = 4
 """Creep times up to which each has a row of its own."""
-
-
-class Row(NamedTuple):
-    """A number with its unit, as text, and what it means."""
-
-    name: str
-    value: str
-    words: str
-
-
-class _Case(NamedTuple):
-    """What comes in touch, and how: of an approach curve its deepest tap."""
-
-    contact: "Contact"
-    motion: Any
-    drive: "Drive | None"
 
 
 def regime(experiment: "Experiment") -> Table:
@@ -59,9 +41,9 @@ def regime(experiment: "Experiment") -> Table:
 
 def rows(experiment: "Experiment") -> list[Row]:
     """Return the rows of that table."""
-    case = _case(experiment)
-    contact, motion, drive = case
-    first, last = float(motion.breaks[0]), float(motion.breaks[-1])
+    contact, case = _case(experiment)
+    motion = case.motion
+    duration = float(motion.breaks[-1] - motion.breaks[0])
     lowest = lowest_height(motion)
     radius = contact.contact_radius(lowest)
 
@@ -69,66 +51,55 @@ def rows(experiment: "Experiment") -> list[Row]:
     _add_tip(found, contact)
     _add_adhesion(found, contact)
     _add_regularisation(found, experiment, contact)
-    carried = experiment.cantilever is not None and drive is None
-    where = "above the undeformed surface" + (", lever unbent" if carried else "")
-    where = "of a tap: Hertz against the drive" if drive else where
-    found.append(Row("lowest tip height", readable(lowest, "m"), where))
+    bends = MODES[experiment.mode].lever == "stiffness"
+    where = "above the undeformed surface" + (", lever unbent" if bends else "")
+    found.append(Row("lowest tip height", readable(lowest, "m"), case.depth or where))
     theory = "JKR" if contact.adhesive else "without adhesion"
     expected = f"{theory}, {_slow(contact)}, at the lowest height"
     words = expected if radius else "none is expected to last"
     found.append(Row("contact radius", readable(radius, "m"), words))
-    if carried:
+    if bends:
         _add_lever(found, contact, experiment.cantilever.stiffness, radius)
-    if drive:
-        _add_drive(found, drive)
-    whole = "tap" if drive else "motion"
-    found.append(Row(f"time of the {whole}", readable(last - first, "s"), ""))
-    _add_sample(found, contact, last - first, whole)
-    cost = _cost_in_words(_seconds(experiment, case))
-    found.append(Row("expected cost", cost, _cost_of(experiment, case)))
+    found += case.rows
+    found.append(Row(f"time of the {case.noun}", readable(duration, "s"), ""))
+    _add_sample(found, contact, duration, case.noun)
+    cost = _cost_in_words(expected_seconds(experiment))
+    found.append(Row("expected cost", cost, _reason_of_cost(experiment, contact, case)))
     return found
 
 
 def expected_seconds(experiment: "Experiment") -> float:
     """Return the order of magnitude of a run, s on one core."""
-    return _seconds(experiment, _case(experiment))
+    contact, case = _case(experiment)
+    runs = case.runs * (_CHECKED if experiment.check else 1)
+    solver = _solver(experiment)
+    if solver.adaptive:
+        runs *= _TENTH ** log10(_USUAL / experiment.tolerance)
+    return runs * solver.expected_seconds(contact, case.motion)
 
 
-def _case(experiment: "Experiment") -> _Case:
-    contact = regularised(experiment.contact, experiment.regularise)
-    motion = experiment.motion
-    if experiment.mode != "approach-curve":
-        return _Case(contact, motion, None)
-    drive, frequency = drive_of(
-        experiment.cantilever, motion.free_amplitude, motion.drive_frequency
-    )
-    amplitudes = motion.free_amplitude * np.array(motion.amplitude_ratio)
-    return _Case(contact, deepest_tap(contact, drive, frequency, amplitudes), drive)
+def _case(experiment: "Experiment") -> tuple["Contact", Foreseen]:
+    """Return what comes in touch, and how."""
+    contact = regularise_contact(experiment.contact, experiment.regularise)
+    mode = MODES[experiment.mode]
+    return contact, mode.expect(contact, experiment.cantilever, experiment.motion)
 
 
 def _solver(experiment: "Experiment") -> Any:
     return Energy() if experiment.solver is None else experiment.solver
 
 
-def _seconds(experiment: "Experiment", case: _Case) -> float:
-    runs = (_TAPS if case.drive else 1) * (_CHECKED if experiment.check else 1)
-    solver = _solver(experiment)
-    if solver.adaptive:
-        runs *= _TENTH ** log10(_USUAL / experiment.tolerance)
-    return runs * solver.expected_seconds(case.contact, case.motion)
-
-
-def _cost_of(experiment: "Experiment", case: _Case) -> str:
-    """Tell what a run costs its time for."""
+def _reason_of_cost(experiment: "Experiment", contact: "Contact", case: Foreseen) -> str:
+    """Return what a run costs its time for."""
     solver = _solver(experiment)
     if not solver.adaptive:
         reason = f"{solver.steps} steps of {solver.nodes} nodes"
-    elif case.contact.adhesive:
-        crossed = cohesive_lengths_crossed(case.contact, case.motion)
+    elif contact.adhesive:
+        crossed = cohesive_lengths_crossed(contact, case.motion)
         reason = f"the edge crosses at most {crossed:.2g} cohesive lengths"
     else:
         reason = "no tension zone to resolve"
-    reason = f"some {_TAPS} taps; {reason}" if case.drive else reason
+    reason = f"some {case.runs} {case.noun}s; {reason}" if case.runs > 1 else reason
     return f"{reason}; with a check" if experiment.check else reason
 
 
@@ -237,16 +208,6 @@ def _add_lever(found: list[Row], contact: "Contact", lever: float, radius: float
         share = stiffness / (stiffness + lever)
         words = f"2·E·a, {_slow(contact)}; lever bends by {share:.0%} of the way"
         found.append(Row("contact stiffness", readable(stiffness, "N/m"), words))
-
-
-def _add_drive(found: list[Row], drive: "Drive") -> None:
-    """Tell what drives the lever, and what that can hold and feed."""
-    found.append(Row("lever stiffness", readable(drive.stiffness, "N/m"), ""))
-    words = f"driven at {drive.detuning:.4g} of the resonance, Q = {drive.quality_factor:.4g}"
-    found.append(Row("free amplitude", readable(drive.free_amplitude, "m"), words))
-    found.append(Row("force of the drive", readable(drive.force, "N"), "amplitude, on the tip"))
-    most = readable(drive.most_dissipation, "J")
-    found.append(Row("largest dissipation", most, "that the drive can feed, a cycle"))
 
 
 def _tabor_in_words(tabor: float) -> str:

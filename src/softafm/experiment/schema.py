@@ -5,7 +5,8 @@ its fields are the table's other keys, and ``build`` returns the object.
 """
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, fields
+from dataclasses import MISSING, fields
+from functools import cache
 from inspect import Parameter, signature
 from pathlib import Path
 from typing import Annotated, Any, ClassVar, Literal, get_args, get_origin, get_type_hints
@@ -66,11 +67,14 @@ from softafm.experiment.entries import (
     Whole,
     choice_of,
     file_of,
+    quantity_of,
     refused_as,
 )
 from softafm.files.measured import read_base_trajectory, read_trajectory
 from softafm.instrument.cantilever import Cantilever
 from softafm.instrument.motions import Sine, Trajectory, Triangle
+from softafm.modes import Mode
+from softafm.modes.approach import AmplitudeSweep
 from softafm.rheology import (
     Elastic,
     FractionalStandardLinearSolid,
@@ -112,6 +116,7 @@ from softafm.tips import (
     Tip,
     read_tip_profile,
 )
+from softafm.units.quantities import Kind
 
 
 class Table(BaseModel):
@@ -236,15 +241,6 @@ class BaseTrajectoryMotion(TrajectoryMotion):
     file: Annotated[Any, *file_of(read_base_trajectory)]
 
 
-@dataclass(frozen=True)
-class AmplitudeSweep:
-    """What ``softafm.approach_curve`` takes besides contact and cantilever."""
-
-    free_amplitude: float
-    amplitude_ratio: tuple[float, ...]
-    drive_frequency: float | None = None
-
-
 class SweepMotion(Table):
     """``[motion]`` of an approach curve: amplitude ratios, listed or evenly spaced.
 
@@ -322,7 +318,7 @@ _PLAIN: dict[Any, Any] = {
     bool: Flag,
     Stepper: choice_of(STEPPERS),
 }
-"""How all other parameters are written, by the type that the solver's dataclass declares."""
+"""How all other parameters are written, by the type that the dataclass declares."""
 
 
 class Solver(Table):
@@ -344,12 +340,20 @@ def _solver(solver: type) -> type[Solver]:
 
 
 def _written(name: str, declared: Any) -> Any:
-    """Return the type of a key that is a solver's parameter."""
+    """Return the type of a key that is a field of a dataclass; ValueError if there is none."""
     if name in _WITH_UNIT:
         return _WITH_UNIT[name]
+    for unit in getattr(declared, "__metadata__", ()):
+        if isinstance(unit, Kind):
+            return quantity_of(unit)
     if get_origin(declared) is Literal:
         return choice_of({choice: choice for choice in get_args(declared)})
-    return _PLAIN[declared]
+    if declared in _PLAIN:
+        return _PLAIN[declared]
+    raise ValueError(
+        f"field {name}: {declared} cannot be written in an experiment file; take Annotated[float, "
+        "LENGTH] or another Kind of softafm.units.quantities, or float, int, bool or a Literal"
+    )
 
 
 class Thing(Table):
@@ -525,25 +529,55 @@ CHOICES: dict[str, tuple[str, dict[str, type[Table]]]] = {
 }
 """For each table the key that chooses, and what it can choose."""
 
-_ANY_MOTION: dict[str, type[Table]] = {
-    "triangle": TriangleMotion,
-    "sine": SineMotion,
-    "trajectory": TrajectoryMotion,
+_MOTIONS: dict[type, type[Table]] = {
+    Triangle: TriangleMotion,
+    Sine: SineMotion,
+    Trajectory: TrajectoryMotion,
+    AmplitudeSweep: SweepMotion,
 }
+"""Tables of motions that can be written in several ways."""
+_OF_A_BASE: dict[type, type[Table]] = {Trajectory: BaseTrajectoryMotion}
+"""Those that differ where the base of a lever moves."""
+_OF_PARAMETERS: dict[type, type[Table]] = {Sine: TapMotion}
+"""Those that differ where a mode takes the parameters of a motion and not the motion."""
 
-MOTIONS: dict[str, dict[str, type[Table]]] = {
-    "force-distance": _ANY_MOTION,
-    "force-spectroscopy": {**_ANY_MOTION, "trajectory": BaseTrajectoryMotion},
-    "tapping-cycle": {"sine": TapMotion},
-    "approach-curve": {"sine": SweepMotion},
-}
-"""For each mode the shapes of motion it takes, the default one first."""
 
-CANTILEVERS: dict[str, type[Table]] = {
-    "force-spectroscopy": LeverTable,
-    "approach-curve": ResonatorTable,
-}
-"""For each mode that needs a cantilever its table; the others have no use for one."""
+class Motion(Table):
+    """A ``[motion]`` whose keys are the fields of a dataclass."""
+
+    motion: ClassVar[type]
+
+    def build(self) -> Any:
+        return self.motion(**{key: getattr(self, key) for key in self.model_fields_set})
+
+
+@cache
+def motions_of(mode: Mode) -> dict[str, type[Table]]:
+    """Return the tables of the motions that a mode takes by shape, the default one first."""
+    written = dict(_MOTIONS)
+    written |= _OF_A_BASE if mode.lever else {}
+    written |= {} if mode.takes_motion else _OF_PARAMETERS
+    return {
+        shape: written[motion] if motion in written else _motion(motion)
+        for shape, motion in mode.motions.items()
+    }
+
+
+def _motion(motion: type) -> type[Motion]:
+    """Return the table of a motion, a dataclass."""
+    types = get_type_hints(motion, include_extras=True)
+    keys: dict[str, Any] = {
+        f.name: (_written(f.name, types[f.name]), ... if f.default is MISSING else f.default)
+        for f in fields(motion)
+    }
+    table = create_model(motion.__name__, __base__=Motion, **keys)
+    table.motion = motion
+    return table
+
+
+def cantilever_of(mode: Mode) -> type[Table] | None:
+    """Return the table of a mode's cantilever, None if it has no use for one."""
+    return {"": None, "stiffness": LeverTable, "resonator": ResonatorTable}[mode.lever]
 
 
 def chosen(

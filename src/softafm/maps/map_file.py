@@ -9,12 +9,13 @@ from typing import TYPE_CHECKING, Any
 from softafm.checks.refusals import ConfigError, as_written, nearest, one_of, shown, unknown
 from softafm.experiment.config import build_table, load_document, set_value
 from softafm.experiment.entries import Frequency, Length, Ratio, Tabor, Tolerance, choice_of
-from softafm.experiment.schema import MOTIONS, Table, built, chosen
+from softafm.experiment.schema import Table, built, chosen
 from softafm.experiment.takers import MAP_MODES, refuse_unless
 from softafm.maps.imaging import AmplitudeModulation, ForceVolume
 from softafm.maps.map_tables import PATTERNS
 from softafm.maps.sample_map import SampleMap
 from softafm.maps.scan import scan
+from softafm.modes import MODES, Mode, approach, force_distance, spectroscopy
 from softafm.progress import Progress
 
 if TYPE_CHECKING:
@@ -102,7 +103,7 @@ def map_from(document: Mapping[str, Any], folder: Path) -> MapExperiment:
         As ``load_map``.
     """
     mode = document.get("mode")
-    if mode in MOTIONS:
+    if isinstance(mode, str) and mode in MODES:
         refuse_unless(document, "scan")
     if mode is None:
         raise ConfigError([f"mode: missing; must be {one_of(MAP_MODES)}"])
@@ -121,17 +122,17 @@ def map_from(document: Mapping[str, Any], folder: Path) -> MapExperiment:
         except ConfigError as error:
             problems.extend(str(error).splitlines())
 
-    def as_of(mode: str, name: str) -> Any:
+    def as_of(mode: Mode, name: str) -> Any:
         """Read a table as experiments of a mode do."""
         return read(name, lambda written: build_table(name, document, mode, folder))
 
-    tip = as_of("tapping-cycle", "tip")
+    tip = as_of(force_distance.MODE, "tip")
     if mode == "tapping-map":
-        lever = as_of("approach-curve", "cantilever")
+        lever = as_of(approach.MODE, "cantilever")
         motion = read("motion", lambda t: built("motion", t, SetpointMotion, folder=folder))
     else:
-        lever = as_of("force-spectroscopy", "cantilever") if "cantilever" in document else None
-        motion = as_of("force-distance", "motion")
+        lever = as_of(spectroscopy.MODE, "cantilever") if "cantilever" in document else None
+        motion = as_of(force_distance.MODE, "motion")
     table = read(
         "map", lambda t: chosen("map", t, "pattern", PATTERNS, default="uniform", folder=folder)
     )

@@ -20,7 +20,7 @@ from softafm.maps.imaging import AmplitudeModulation, ForceVolume
 from softafm.maps.sample_map import SampleMap
 from softafm.modes.start import refuse_start_inside, refuse_tapped_flow, refuse_unable, solver_of
 from softafm.progress import Progress, reporting
-from softafm.results.datasets import curve_dataset, describe, misfit_attributes
+from softafm.results.datasets import dataset, describe, misfit_attributes
 
 if TYPE_CHECKING:
     from xarray import Dataset
@@ -250,7 +250,7 @@ def _dataset(sample, imaging, solver, tolerance, names, values, warned, done) ->
         "map": {"size": [width, depth], "fields": list(sample.fields)},
         "imaging": describe(imaging),
     }
-    result = curve_dataset(
+    result = dataset(
         imaging.kind, sample.materials[0], parts, solver, tolerance, data, coordinates, warned, done
     )
     for name, array in sample.fields.items():

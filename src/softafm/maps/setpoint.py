@@ -18,7 +18,7 @@ from softafm.instrument.oscillator import Drive
 from softafm.modes.amplitude_curve import AmplitudeCurve
 from softafm.modes.approach import doubt_sine
 from softafm.modes.tap_map import OBSERVABLES, TapMap
-from softafm.modes.tapping import tap_observables
+from softafm.modes.tapping import observe_taps
 
 ATTRACTIVE, REPULSIVE = 0, 1
 BRANCHES = ("attractive", "repulsive")
@@ -88,8 +88,8 @@ class Setpoint:
             motion = Sine(amplitude + approach, amplitude, self.frequency, "steady")
             history = self.solver.solve(contact, motion, tolerance=self.tolerance)
         self.taps += 1
-        found = tap_observables(contact, motion, history)
-        return np.array([found[name][1] for name in OBSERVABLES])
+        found = observe_taps(contact, motion, history)
+        return np.array([found[name] for name in OBSERVABLES])
 
     def excess(self, values) -> float:
         """Force needed over that of the drive, less 1."""

@@ -1,8 +1,8 @@
 """What all modes begin with: checks, and a run of the solver."""
 
-import warnings
 from dataclasses import replace
 
+from softafm.checks.callers import warn_caller
 from softafm.checks.kinds import MOTION, SOLVER, refuse_incomplete, refuse_other
 from softafm.checks.validate import tabor_of, tolerance_of
 from softafm.contact import Contact
@@ -26,7 +26,7 @@ def carry(contact, motion, solver, tolerance, profiles, progress, **options):
     doubted = [AccuracyWarning(text) for text in getattr(motion, "doubts", ())]
     doubts = (*doubt_window(contact, motion), *doubted)
     for warning in doubts:
-        warnings.warn(warning, stacklevel=3)  # the caller of the mode
+        warn_caller(warning)
     with reporting(progress) as report:
         history = solver.solve(
             contact, motion, tolerance=tolerance, profiles=profiles, progress=report, **options
@@ -42,7 +42,7 @@ def solver_of(solver):
     return solver
 
 
-def regularised(contact: Contact, tabor: float | None) -> Contact:
+def regularise_contact(contact: Contact, tabor: float | None) -> Contact:
     """Return the contact that a mode's option ``regularise`` stands for.
 
     ValueError if it is none, or the number is out of range.

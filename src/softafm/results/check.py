@@ -13,6 +13,7 @@ from softafm.checks.refusals import nearest, one_of, shown
 from softafm.results.content import (
     BRANCHES,
     FORMAT,
+    MAPS,
     NEEDED,
     PROFILES,
     REGULARISED,
@@ -39,7 +40,8 @@ def refuse_unusable(attributes: Mapping[str, Any], variables: Variables) -> None
         raise ValueError("not a result of softafm (its attribute 'format' says otherwise)")
     mode = attributes.get("mode")
     if not isinstance(mode, str) or mode not in NEEDED:
-        raise ValueError(f"attribute mode = {shown(mode)}: {nearest(mode, list(NEEDED))}")
+        modes_first = sorted(NEEDED, key=lambda known: known in MAPS)
+        raise ValueError(f"attribute mode = {shown(mode)}: {nearest(mode, modes_first)}")
     needed = NEEDED[mode]
     _refuse_experiment(mode, needed, attributes)
     _refuse_attributes(needed, attributes)
@@ -71,12 +73,12 @@ def _refuse_experiment(mode: str, needed: Needed, attributes: Mapping[str, Any])
     for part in ("tip", "sample", "surface", needed.described):
         if not isinstance(experiment.get(part), dict):
             raise ValueError(f"attribute experiment: does not describe the {part}")
-    if mode == "approach-curve":
-        free = experiment["motion"].get("free_amplitude")
-        if not _is_number(free) or not 0 < free < _LARGEST_BY_DEFAULT:
+    for name, unit in needed.inputs.items():
+        value = experiment["motion"].get(name)
+        if not _is_number(value) or not 0 < value < _LARGEST_BY_DEFAULT:
             raise ValueError(
-                f"attribute experiment: motion.free_amplitude = {shown(free)}: must be a number in "
-                "m, greater than 0"
+                f"attribute experiment: motion.{name} = {shown(value)}: must be a number in "
+                f"{unit}, greater than 0"
             )
 
 

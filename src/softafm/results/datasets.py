@@ -16,7 +16,7 @@ import numpy as np
 import softafm
 from softafm.checks.kinds import refuse_non_dataset
 from softafm.checks.paths import why_no_file
-from softafm.results.content import FORMAT, LARGEST, variable
+from softafm.results.content import FORMAT, HISTORY, LARGEST, PROFILES, variable
 from softafm.results.netcdf import file_content
 from softafm.solvers.history import History
 
@@ -73,43 +73,31 @@ def _described(value):
     return {"name": f"{function.__module__}.{function.__qualname__}", "source": source}
 
 
-def dataset(
-    mode: str,
-    contact,
-    motion,
-    solver,
-    tolerance: float,
-    history: History,
-    observables: dict[str, tuple],
-    cantilever=None,
-) -> "Dataset":
-    """Assemble a result: the history, the mode's observables (dims, values) and the provenance."""
-    curves = ("tip_height", "force", "contact_radius", "axis_deformation", "viscous_power")
-    data = {name: variable(name, "time", getattr(history, name)) for name in curves}
-    for name in ("jump_time", "jump_energy"):
-        data[name] = variable(name, "jump", getattr(history, name))
-    for name, (dims, values) in observables.items():
-        data[name] = variable(name, dims, values)
-    coordinates = {"time": variable("time", "time", history.time)}
+def history_variables(contact, history: History) -> tuple[dict, dict]:
+    """Return the curves, jumps and shapes of a history, and their coordinates.
+
+    Both by name as (dims, values).
+    """
+    data = {name: (dims, getattr(history, name)) for name, dims in HISTORY.items()}
+    coordinates = {"time": ("time", history.time)}
     if history.profiles is not None:
         shapes = history.profiles
         gap = history.tip_height[:, None] + contact.tip.profile(shapes.radius) - shapes.deformation
-        coordinates["r"] = variable("r", "r", shapes.radius)
-        data["deformation"] = variable("deformation", ("time", "r"), shapes.deformation)
-        data["gap"] = variable("gap", ("time", "r"), gap)
-        data["pressure"] = variable("pressure", ("time", "r"), contact.surface.pressure(gap))
-    parts = {"motion": motion, **({} if cantilever is None else {"cantilever": cantilever})}
-    attributes = _provenance(
-        mode, contact, parts, solver, tolerance, history.warnings, history.diagnostics
-    )
-    return _assemble(data, coordinates, attributes)
+        coordinates["r"] = ("r", shapes.radius)
+        for name, values in (
+            ("deformation", shapes.deformation),
+            ("gap", gap),
+            ("pressure", contact.surface.pressure(gap)),
+        ):
+            data[name] = (PROFILES[name], values)
+    return data, coordinates
 
 
-def curve_dataset(
-    mode: str, contact, parts: dict, solver, tolerance: float, data, coordinates, warnings,
-    diagnostics,
+def dataset(
+    mode: str, contact, parts: Mapping[str, Any], solver, tolerance: float, data, coordinates,
+    warnings, diagnostics,
 ) -> "Dataset":  # fmt: skip
-    """Assemble a result that is not a history: variables and coordinates by name as (dims, values).
+    """Assemble a result of variables and coordinates, by name as (dims, values).
 
     ``parts`` are what took part besides the contact, by name: objects, or dictionaries.
     """
@@ -319,15 +307,23 @@ def export(result: "Dataset", path, *, overwrite: bool = False) -> None:
     elif suffix == ".csv":
         if {"x", "y"} <= set(result.dims):
             raise ValueError(f"{path}: maps have no CSV; take .h5, or export_gwyddion")
-        if not {"time", "sweep_height"} & set(result.dims) or "experiment" not in result.attrs:
+        if not _curve_dimension(result) or "experiment" not in result.attrs:
             raise ValueError(f"{path}: the dataset is not a result of softafm, so it has no curve")
         write_whole(path, overwrite, lambda part: _write_csv(result, part))
     else:
         raise ValueError(f"{path}: suffix {suffix!r} is not known, must be .csv or .h5")
 
 
+def _curve_dimension(result: "Dataset") -> str:
+    """Return along which coordinate the curves of a result lie; "" if it has none."""
+    known = [str(name) for name in result.dims if name in result.coords]
+    curves = {variable.dims for variable in result.data_vars.values()}
+    first = [name for name in ("time", "sweep_height") if name in known]
+    return next((name for name in [*first, *known] if (name,) in curves), "")
+
+
 def _write_csv(result, path):
-    along = "time" if "time" in result.dims else "sweep_height"
+    along = _curve_dimension(result)
     numbers = [v for v in result.data_vars.values() if v.dtype.kind in "fiub"]
     curves = [result[along]] + [v for v in numbers if v.dims == (along,)]
     scalars = [v for v in numbers if v.dims == ()]

@@ -20,29 +20,13 @@ from softafm.contact import Contact
 from softafm.errors import AccuracyWarning
 from softafm.experiment.config import build_table, experiment_from
 from softafm.experiment.fields import Keys, keys_of, replaced
+from softafm.modes import MODES, Axes, Mode
 from softafm.results.content import VARIABLES
 from softafm.sweeps.designs import Design
 
 Coordinate = tuple[tuple[str, ...], np.ndarray, Mapping[str, str]]
 """Dimensions, values and attributes."""
 
-_TAP = (
-    "virial", "dissipation", "force_max", "force_min", "force_min_approach", "force_mean",
-    "contact_time", "indentation", "viscous_loss", "cycles_run",
-)  # fmt: skip
-_CURVE = ("force_max", "force_min", "force_min_approach", "loop_energy", "viscous_loss")
-_SWEEP = (
-    "mean_height", "phase", "virial", "dissipation", "force_mean", "force_max", "force_min",
-    "contact_time", "indentation",
-)  # fmt: skip
-OBSERVABLES = {
-    "force-distance": _CURVE,
-    "force-spectroscopy": _CURVE,
-    "tapping-cycle": _TAP,
-    "approach-curve": _SWEEP,
-}
-"""What a run of each mode gives; that of an approach curve over branch and amplitude ratio."""
-_OVER_RATIOS = ("amplitude_ratio", "first_ratio", "last_ratio", "points")
 _TRIED = 200
 """Values of a parameter, or samples, for which an experiment is built before anything starts."""
 
@@ -140,7 +124,7 @@ def _kept(contact: Contact) -> Contact:
         return contact
 
 
-def _kept_table(name: str, document: Mapping[str, Any], mode: Any, folder: Path) -> Any:
+def _kept_table(name: str, document: Mapping[str, Any], mode: Mode | None, folder: Path) -> Any:
     """Return what a table describes, the same object for equal tables; it warns each time."""
     thing, told = _table(name, json.dumps(document.get(name)), mode, folder)
     for text in told:
@@ -149,7 +133,7 @@ def _kept_table(name: str, document: Mapping[str, Any], mode: Any, folder: Path)
 
 
 @lru_cache(maxsize=256)
-def _table(name: str, written: str, mode: Any, folder: Path) -> tuple[Any, tuple[str, ...]]:
+def _table(name: str, written: str, mode: Mode | None, folder: Path) -> tuple[Any, tuple[str, ...]]:
     content = json.loads(written)
     with warnings.catch_warnings(record=True) as told:
         warnings.simplefilter("always", AccuracyWarning)
@@ -175,28 +159,24 @@ def experiment_campaign(
     """
     from softafm.experiment.regime import expected_seconds
 
-    mode = document["mode"]
-    observed = tuple(OBSERVABLES[mode] if names is None else names)
-    _refuse_unknown(observed, OBSERVABLES[mode])
+    mode = MODES[document["mode"]]
+    observed = tuple(mode.observed if names is None else names)
+    _refuse_unknown(observed, mode.observed)
     run = RunExperiment(document, folder, observed)
     tried = _tried(run, design)
     costs = [expected_seconds(experiment) for experiment in tried[:: max(1, len(tried) // 20)]]
     coordinates: dict[str, Coordinate] = dict(design.coordinates)
-    dimensions: tuple[str, ...] = ()
-    shape: tuple[int, ...] = ()
-    if mode == "approach-curve":
-        _refuse_ratios(design)
-        ratios = np.array(tried[0].motion.amplitude_ratio)
-        branches = np.array(("attractive", "unstable", "repulsive"))
-        dimensions, shape = ("branch", "amplitude_ratio"), (branches.size, ratios.size)
-        for name, values in zip(dimensions, (branches, ratios), strict=True):
-            units, long_name = VARIABLES[name]
-            coordinates[name] = ((name,), values, {"units": units, "long_name": long_name})
+    _refuse_axes(design, mode.axes)
+    axes = [np.array(values) for values in mode.axes.values(tried[0].motion)]
+    for name, values in zip(mode.axes.dims, axes, strict=True):
+        units, long_name = VARIABLES[name]
+        coordinates[name] = ((name,), values, {"units": units, "long_name": long_name})
+    shape = tuple(values.size for values in axes)
     return Campaign(
         dimensions=design.dimensions,
         shape=design.shape,
         coordinates=coordinates,
-        observables=tuple(Observable(n, *VARIABLES[n], dimensions, shape) for n in observed),
+        observables=tuple(Observable(n, *VARIABLES[n], mode.axes.dims, shape) for n in observed),
         point=design.written_at,
         run=run,
         identity={
@@ -219,14 +199,16 @@ def _refuse_unknown(observed: Sequence[Any], known: Sequence[str]) -> None:
             raise ConfigError([f"sweep.observables: '{name}' is there twice; leave one out"])
 
 
-def _refuse_ratios(design: Design) -> None:
+def _refuse_axes(design: Design, axes: Axes) -> None:
+    """Raise ConfigError if what varies changes what the results of every run lie over."""
     for parameter in design.parameters:
         path = parameter.field.path
-        if path in (f"motion.{key}" for key in _OVER_RATIOS):
+        if path in (f"motion.{key}" for key in axes.keys):
+            over = " and ".join(axes.dims)
             raise ConfigError(
                 [
-                    f"sweep.vary.'{path}': the results of an approach curve lie over its amplitude "
-                    "ratios already; list them in [motion] and vary something else"
+                    f"sweep.vary.'{path}': the results of every run lie over {over} already, which "
+                    "this would change; set it in [motion] and vary something else"
                 ]
             )
 

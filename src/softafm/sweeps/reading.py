@@ -7,11 +7,10 @@ from pathlib import Path
 from typing import Any
 
 from softafm.checks.refusals import ConfigError, nearest, one_of, shown
-from softafm.experiment import schema
 from softafm.experiment.fields import field_of, plain_field
 from softafm.experiment.takers import refuse_unless
+from softafm.modes import MODES
 from softafm.sweeps.campaign import (
-    OBSERVABLES,
     Campaign,
     experiment_campaign,
     function_campaign,
@@ -108,14 +107,13 @@ def campaign_of(
     if callable(what):
         return function_campaign(what, design(plain_field), table.observables)
     mode = what.get("mode")
-    modes = list(schema.MOTIONS)
     if mode is None:
-        raise ConfigError([f"mode: missing; must be {one_of(modes)}"])
-    if mode not in modes:
-        raise ConfigError([f"mode = {shown(mode)}: {nearest(mode, modes)}"])
+        raise ConfigError([f"mode: missing; must be {one_of(list(MODES))}"])
+    if not isinstance(mode, str) or mode not in MODES:
+        raise ConfigError([f"mode = {shown(mode)}: {nearest(mode, list(MODES))}"])
     paths = [p for key in table.vary for p in (key if isinstance(key, tuple) else (key,))]
     field = partial(_field, what, paths, folder, not from_file)
-    taken = [*OBSERVABLES[mode], "branch", "amplitude_ratio", "sample"]
+    taken = [*MODES[mode].observed, *MODES[mode].axes.dims, "sample"]
     return experiment_campaign(what, folder, design(field, taken=taken), table.observables)
 
 

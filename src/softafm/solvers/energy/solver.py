@@ -1,10 +1,10 @@
 """The default solver: implicit energy-minimising steps on a mesh that follows the contact edge."""
 
-import warnings
 from dataclasses import dataclass
 from time import perf_counter
 from typing import ClassVar
 
+from softafm.checks.callers import warn_caller
 from softafm.checks.validate import finite, positive
 from softafm.compiled.announce import announced_compilation
 from softafm.instrument.motions import lowest_height
@@ -81,7 +81,7 @@ class Energy:
                 progress(fraction, f"{fraction:.0%} of the motion")
         history = run.history(perf_counter() - started)
         for warning in history.warnings:
-            warnings.warn(warning, stacklevel=4)  # the caller of the mode
+            warn_caller(warning)
         return history
 
     def expected_seconds(self, contact, motion) -> float:

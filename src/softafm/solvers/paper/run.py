@@ -1,6 +1,5 @@
 """One run of a fixed-step solver: a discretised surface, pieces of a motion, a history."""
 
-import warnings
 from collections.abc import Callable
 from itertools import pairwise
 from time import perf_counter
@@ -8,6 +7,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from softafm.checks.callers import warn_caller
 from softafm.errors import AccuracyWarning, DivergedError
 from softafm.halfspace.mesh import beyond
 from softafm.instrument.motions import lowest_height
@@ -97,7 +97,7 @@ def march(
             progress(fraction, f"{fraction:.0%} of the motion")
     history = run.history(perf_counter() - started)
     for warning in history.warnings:
-        warnings.warn(warning, stacklevel=5)  # the caller of the mode
+        warn_caller(warning)
     return history
 
 
