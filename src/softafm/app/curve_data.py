@@ -8,21 +8,21 @@ import numpy as np
 
 from softafm.draw import approach_data, histories
 from softafm.draw.approach_data import DIRECTIONS, Curves
+from softafm.modes import MODES
 
 if TYPE_CHECKING:
     from xarray import Dataset
 
-AXES = {**histories.AXES, **approach_data.AXES}
 _MOST_POINTS = 20_000
 _MISSED = 1e-4
 """Of the range of a column, by how much each round of leaving out samples may at first miss it."""
 
 
 class Parts(NamedTuple):
-    """What is drawn of one result; each part has columns named as in ``AXES``."""
+    """What is drawn of one result; each part has columns by the names of variables."""
 
     lines: Curves
-    """``"approach"`` and ``"retract"``, with NaN where a line is interrupted."""
+    """``"approach"`` and ``"retract"``, or ``"curve"``; with NaN where a line is interrupted."""
     points: Curves
     """Points by what they are called."""
     jumps: dict[str, tuple[dict[str, np.ndarray], dict[str, np.ndarray]]]
@@ -30,7 +30,12 @@ class Parts(NamedTuple):
 
     def holds(self, *names: str) -> bool:
         """Whether there are columns of all these names."""
-        return all(name in self.lines["approach"] for name in names)
+        return all(name in columns for columns in self.lines.values() for name in names)
+
+    @property
+    def names(self) -> list[str]:
+        """The names of the columns."""
+        return list(next(iter(self.lines.values())))
 
     def extent(self, name: str, along: str = "", within: tuple[float, float] = (-inf, inf)):
         """Return lowest and highest value on lines and points, where ``along`` is ``within``."""
@@ -49,13 +54,33 @@ def parts_of(result: "Dataset") -> Parts | None:
         return _sweep_parts(result) if result.sizes["sweep_height"] else None
     if "time" in result.dims and result.sizes["time"] > 1:
         return _history_parts(result)
-    return None
+    return _curve_parts(result)
+
+
+def panels_of(result: "Dataset") -> tuple[tuple[str, str], ...]:
+    """Return for each panel of a result's figure what is drawn against what; () if not known."""
+    mode = MODES.get(str(result.attrs.get("mode")))
+    return () if mode is None else mode.figure.panels
+
+
+def axis_of(name: str) -> tuple[str, str | None]:
+    """Return the title of the axis of a column, and its unit if it takes prefixes."""
+    return approach_data.AXES[name] if name in approach_data.AXES else histories.axis_of(name)
+
+
+def _curve_parts(result: "Dataset") -> Parts | None:
+    """Return the curves over the coordinate of the first panel."""
+    names = dict.fromkeys(name for panel in panels_of(result) for name in panel if name in result)
+    along = result[next(iter(names))].dims if names else ()
+    columns = {name: result[name].values for name in names if result[name].dims == along}
+    return Parts({"curve": columns}, {}, {}) if len(along) == 1 and len(columns) > 1 else None
 
 
 def _history_parts(result: "Dataset") -> Parts:
+    drawn = dict.fromkeys([*histories.AXES, *(n for panel in panels_of(result) for n in panel)])
     columns = {
         name: result[name].values
-        for name in histories.AXES
+        for name in drawn
         if name in result and result[name].dims == ("time",)
     }
     kept = thinned(columns["time"], list(columns.values()), _MOST_POINTS)

@@ -21,7 +21,7 @@ from bokeh.models import (
 from bokeh.plotting import figure as new_figure
 
 from softafm.app.colours import Theme, in_role, recolour
-from softafm.app.curve_data import AXES, Parts, parts_of
+from softafm.app.curve_data import Parts, axis_of, panels_of, parts_of
 from softafm.draw import histories
 from softafm.modes import MODES
 from softafm.units.quantities import prefixed
@@ -41,7 +41,7 @@ TABS: dict[str, tuple[str, tuple[str, ...]]] = {
 }
 """For each tab what is drawn against what, one panel above another."""
 
-_DASHES = {"approach": "solid", "retract": [6, 3]}
+_DASHES = {"approach": "solid", "retract": [6, 3], "curve": "solid"}
 _LEVELS = {"phase": 90.0, **dict.fromkeys(("force", "deflection", "tip_height", "virial"), 0.0)}
 _POINTS: dict[str, dict[str, Any]] = {
     "elastic jump": {"size": 7, "line_width": 1.5},
@@ -95,7 +95,7 @@ def figures(shown: Sequence[Shown], theme: Theme) -> dict[str, LayoutDOM]:
     units = _units([parts for _, parts in drawable])
     drawn = [(one.result, _drawn(one, parts, units)) for one, parts in drawable]
     tabs = {}
-    for title, (abscissa, ordinates) in TABS.items():
+    for title, (abscissa, ordinates) in _tabs([result for result, _ in drawn]).items():
         runs = [(result, run) for result, run in drawn if run.parts.holds(abscissa)]
         if runs:
             shape = _window([result for result, _ in runs], abscissa)
@@ -103,10 +103,22 @@ def figures(shown: Sequence[Shown], theme: Theme) -> dict[str, LayoutDOM]:
     return tabs
 
 
+def _tabs(results: Sequence["Dataset"]) -> dict[str, tuple[str, tuple[str, ...]]]:
+    """Return the tabs, with those for what the figures of modes show beyond the usual ones."""
+    tabs = dict(TABS)
+    known = {(abscissa, ordinate) for abscissa, several in TABS.values() for ordinate in several}
+    for result in results:
+        for abscissa, ordinate in panels_of(result):
+            if (abscissa, ordinate) not in known and {abscissa, ordinate} <= set(result.variables):
+                tabs[axis_of(ordinate)[0]] = (abscissa, (ordinate,))
+    return tabs
+
+
 def _units(parts: Sequence[Parts]) -> dict[str, tuple[float, str]]:
     """Return for each quantity the factor from SI to the unit of its axis, and the unit."""
     units = {}
-    for name, (_, unit) in AXES.items():
+    for name in dict.fromkeys(name for one in parts for name in one.names):
+        unit = axis_of(name)[1]
         held = [one.extent(name) for one in parts if one.holds(name)]
         largest = max((abs(end) for extent in held for end in extent if abs(end) < inf), default=0)
         units[name] = (1.0, "") if unit is None else prefixed(largest, unit)
@@ -190,7 +202,7 @@ def _tab(
 
 
 def _label(name: str, units: dict[str, tuple[float, str]]) -> str:
-    title, unit = AXES[name][0], units[name][1]
+    title, unit = axis_of(name)[0], units[name][1]
     return f"{title} ({unit})" if unit else title
 
 
@@ -292,7 +304,7 @@ def _hover(
     """Show the run and, in their units, what is drawn and when it was."""
     columns = set.intersection(*(set(renderer.data_source.data) for renderer in renderers))
     names = dict.fromkeys([x, y, *({"time"} & columns)])
-    tips = [(AXES[name][0], f"@{name}{{%.4g}} {units[name][1]}".strip()) for name in names]
+    tips = [(axis_of(name)[0], f"@{name}{{%.4g}} {units[name][1]}".strip()) for name in names]
     return HoverTool(
         renderers=renderers,
         tooltips=[("Run", "$name"), *tips],

@@ -5,6 +5,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from softafm.results.content import VARIABLES
+
 if TYPE_CHECKING:
     from xarray import Dataset
 
@@ -17,13 +19,17 @@ AXES = {
     "contact_radius": ("Contact radius", "m"),
 }
 """Title and unit of the axis of a variable."""
+_UNPREFIXED = {"1": "", "degree": " (°)"}
+"""What is added to the title of an axis whose unit takes no prefix."""
 
 
-def axis_of(run: "Dataset", name: str) -> tuple[str, str]:
-    """Return title and unit of the axis of any variable of a result."""
-    described = run[name].attrs
-    words, unit = str(described.get("long_name", name)), str(described.get("units", "1"))
-    return AXES.get(name, (words[:1].upper() + words[1:], unit))
+def axis_of(name: str) -> tuple[str, str | None]:
+    """Return the title of the axis of a variable of results, and its unit if it takes prefixes."""
+    if name in AXES:
+        return AXES[name]
+    unit, words = VARIABLES[name]
+    title = words[:1].upper() + words[1:]
+    return (f"{title}{_UNPREFIXED[unit]}", None) if unit in _UNPREFIXED else (title, unit)
 
 
 def moved(run: "Dataset") -> str:

@@ -27,8 +27,6 @@ from softafm.results.content import unit_of
 _SIZES = {1: (6.4, 4.4), 2: (9.6, 4.2)}
 _PANEL = (4.0, 4.2)
 """Size of a panel where there are three or more, inches."""
-_UNPREFIXED = ("1", "degree")
-"""Units that take no prefix."""
 
 
 def draw_panels(runs: list[xr.Dataset], names: list[str], layout: Layout) -> Figure:
@@ -80,8 +78,8 @@ def _draw(ax: Axes, runs: list[xr.Dataset], abscissa: str, ordinate: str) -> Non
             zorder=3,
             **HOLLOW,
         )
-    ax.set_xlabel(_label(runs[0], abscissa, scales[0]), fontsize=11)
-    ax.set_ylabel(_label(runs[0], ordinate, scales[1]), fontsize=11)
+    ax.set_xlabel(_label(abscissa, scales[0]), fontsize=11)
+    ax.set_ylabel(_label(ordinate, scales[1]), fontsize=11)
     tidy(ax)
 
 
@@ -132,10 +130,12 @@ def _add_legend(
 
 
 def _stroke_entries(runs: list[xr.Dataset]) -> list[Line2D]:
-    """Legend entries of strokes by line style, and of elastic jumps if there are any."""
+    """Legend entries of the strokes that there are by line style, and of elastic jumps."""
     if "jump_time" not in runs[0]:
         return []
-    entries = stroke_entries(len(runs))
+    fallen = {falling for run in runs for _, falling in strokes(run[moved(run)].values)}
+    down, up = stroke_entries(len(runs))
+    entries = [entry for entry, falling in ((down, True), (up, False)) if falling in fallen]
     if any(run["jump_time"].size for run in runs):
         entries.append(Line2D([], [], color="black", label="elastic jump", **HOLLOW))
     return entries
@@ -153,13 +153,13 @@ def _duration(runs: list[xr.Dataset]) -> str:
     return f"Interaction only; the run lasts {quantity(duration, 's')}"
 
 
-def _label(run: xr.Dataset, variable: str, scale: float) -> str:
-    title, unit = axis_of(run, variable)
-    return title if unit == "1" else label_of(title, unit, scale)
+def _label(variable: str, scale: float) -> str:
+    title, unit = axis_of(variable)
+    return title if unit is None else label_of(title, unit, scale)
 
 
 def _scale(runs: list[xr.Dataset], variable: str) -> float:
     """Factor from SI to the prefix that suits the largest value of all runs."""
-    if axis_of(runs[0], variable)[1] in _UNPREFIXED:
+    if axis_of(variable)[1] is None:
         return 1.0
     return factor_of(*(run[variable].values for run in runs))

@@ -4,6 +4,7 @@ from softafm.modes import approach, force_distance, spectroscopy, tapping
 from softafm.modes.mode import MODES, Axes, Foreseen, Layout, Mode, Row, register
 from softafm.modes.perform import Outcome, Settings, perform
 from softafm.modes.scales import Scales
+from softafm.results.content import Observable, observables
 
 __all__ = [
     "MODES",
@@ -11,10 +12,12 @@ __all__ = [
     "Foreseen",
     "Layout",
     "Mode",
+    "Observable",
     "Outcome",
     "Row",
     "Scales",
     "Settings",
+    "observables",
     "perform",
     "register",
 ]

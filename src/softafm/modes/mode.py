@@ -7,6 +7,7 @@ from inspect import Parameter, signature
 from typing import TYPE_CHECKING, Any, Literal, NamedTuple
 
 from softafm.checks.suggestions import call_also
+from softafm.checks.validate import one_of
 from softafm.modes.scales import Scales, force_scales
 from softafm.results.content import HISTORY, Needed, Observable, declare
 
@@ -144,7 +145,8 @@ class Mode:
     Raises
     ------
     ValueError
-        If neither or both of ``observe`` and ``simulate`` are given, or there is no motion.
+        If neither or both of ``observe`` and ``simulate`` are given, there is no motion, or the
+        lever is none of these.
     """
 
     name: str
@@ -168,6 +170,7 @@ class Mode:
     def __post_init__(self):
         if (self.observe is None) == (self.simulate is None):
             raise ValueError(f"mode '{self.name}': must have either observe or simulate")
+        one_of(f"mode '{self.name}': lever", self.lever, ("", "stiffness", "resonator"))
         if not self.motions:
             raise ValueError(f"mode '{self.name}': motions is empty; must hold at least one")
 
@@ -190,7 +193,8 @@ class Mode:
     @property
     def observed(self) -> tuple[str, ...]:
         """Names of the observables that a sweep keeps."""
-        return tuple(name for name, o in self.observables.items() if o.dims == self.axes.dims)
+        dims = self.axes.dims
+        return tuple(n for n, o in self.observables.items() if o.dims == dims and n not in dims)
 
     def arguments(self, motion: Any) -> dict[str, Any]:
         """Return the arguments of the function that stand for a motion, by name."""
