@@ -20,7 +20,7 @@ from softafm.experiment.config import experiment_from
 from softafm.experiment.regime import expected_seconds, rows
 from softafm.modes.start import solver_of
 from softafm.sweeps.reading import campaign_of, table_of
-from softafm.units.quantities import LENGTH
+from softafm.units.quantities import LENGTH, SPEED
 
 PACKAGE = Path(sa.__file__).parent
 SOFT = sa.Contact(
@@ -32,6 +32,7 @@ FILE = {
     "sample": {"model": "elastic", "E": "1 MPa", "poisson": 0.5},
     "surface": {"law": "repulsion", "pressure_at_zero": "10 GPa", "decay": "0.1 nm"},
     "motion": {"deepest": "300 nm", "count": 3},
+    "ramp": {"speed": "2 um/s"},
 }
 
 
@@ -56,23 +57,37 @@ class Depths:
         return self.deepest * np.arange(1, self.count + 1) / self.count
 
 
-def load_curve(contact, deepest, count=4, *, solver=None, tolerance=1e-2, progress=None,
-               check=False, regularise=None):  # fmt: skip
+@dataclass(frozen=True)
+class Ramp:
+    """How each depth is reached.
+
+    Parameters
+    ----------
+    speed
+        Speed of the tip, m/s.
+    """
+
+    kind: ClassVar[str] = "ramp"
+    speed: Annotated[float, SPEED] = 1e-6
+
+
+def load_curve(contact, deepest, count=4, ramp=Ramp(), *, solver=None, tolerance=1e-2,
+               progress=None, check=False, regularise=None):  # fmt: skip
     """Largest force at several depths, each on a fresh place."""
     return modes.perform(
-        LOADS, contact, Depths(deepest, count), solver=solver, tolerance=tolerance,
-        progress=progress, check=check, regularise=regularise,
+        LOADS, contact, Depths(deepest, count), tables={"ramp": ramp}, solver=solver,
+        tolerance=tolerance, progress=progress, check=check, regularise=regularise,
     )  # fmt: skip
 
 
-def press_to_all(contact, cantilever, asked, settings):
-    solver, forces = solver_of(settings.solver), []
+def press_to_all(inputs, settings):
+    asked, solver, forces = inputs.motion, solver_of(settings.solver), []
     for depth in asked.depths:
-        ramp = sa.Triangle(5e-9, -depth, 1e-6)
-        history = solver.solve(contact, ramp, tolerance=settings.tolerance)
+        ramp = sa.Triangle(5e-9, -depth, inputs.tables["ramp"].speed)
+        history = solver.solve(inputs.contact, ramp, tolerance=settings.tolerance)
         forces.append(history.extreme(history.force, 1))
     return modes.Outcome(
-        {"motion": asked}, solver, settings.tolerance,
+        inputs.parts, solver, settings.tolerance,
         {"largest_load": ("depth", np.array(forces))}, {"depth": ("depth", asked.depths)},
         diagnostics={"presses": asked.count},
     )  # fmt: skip
@@ -88,9 +103,10 @@ LOADS = modes.Mode(
     },
     simulate=press_to_all,
     axes=modes.Axes(("depth",), lambda asked: (asked.depths,), ("deepest", "count")),
-    scales=lambda contact, asked, result: modes.Scales({"N": 1e-9}),
-    foresee=lambda contact, cantilever, asked: modes.Foreseen(
-        sa.Triangle(5e-9, -asked.deepest, 1e-6), asked.count, "ramp"
+    tables={"ramp": Ramp},
+    scales=lambda inputs, result: modes.Scales({"N": 1e-9}),
+    foresee=lambda inputs: modes.Foreseen(
+        sa.Triangle(5e-9, -inputs.motion.deepest, 1e-6), inputs.motion.count, "ramp"
     ),
     figure=modes.Layout((("depth", "largest_load"),), cropped=False),
     diagnostics=("solver_presses",),
@@ -121,7 +137,7 @@ def test_every_mode_is_public_under_the_name_of_its_function():
 
 
 def test_a_mode_with_a_coordinate_of_its_own_runs_from_python_and_from_a_file(loads):
-    result = load_curve(SOFT, 300e-9, 3)
+    result = load_curve(SOFT, 300e-9, 3, Ramp(2e-6))
     hertz = [sa.indentation.force(SOFT.tip, depth, 1e6 / 0.75) for depth in result.depth.values]
     np.testing.assert_allclose(result.largest_load.values, hertz, rtol=0.02)
     experiment = experiment_from(FILE, Path())
@@ -131,6 +147,7 @@ def test_a_mode_with_a_coordinate_of_its_own_runs_from_python_and_from_a_file(lo
     )
     single = replace(experiment, motion=Depths(300e-9, 1))
     assert expected_seconds(experiment) == pytest.approx(3 * expected_seconds(single))
+    assert json.loads(result.attrs["experiment"])["ramp"] == {"kind": "ramp", "speed": 2e-6}
     assert rows(experiment)[-1].words.startswith("some 3 ramps; ")
 
 
@@ -155,7 +172,7 @@ def test_its_result_is_checked_saved_exported_and_drawn(tmp_path):
 
 
 def test_its_sweep_keeps_the_coordinate_and_cannot_vary_it(loads):
-    what = {"vary": {"sample.E": ["1 MPa", "2 MPa"]}}
+    what = {"vary": {"sample.E": ["1 MPa", "2 MPa"], "ramp.speed": ["1 um/s"]}}
     campaign = campaign_of(FILE, Path(), table_of(what), from_file=True)
     (load,) = campaign.observables
     assert (load.name, load.unit, load.dimensions, load.shape) == (
@@ -179,6 +196,27 @@ def test_the_page_draws_it_and_offers_no_movie(loads):
     ]
     with pytest.raises(ConfigError, match=r"^run.profiles = True: of no use with mode = 'load-c"):
         experiment_from({**FILE, "run": {"profiles": True}}, Path())
+
+
+@pytest.mark.usefixtures("loads")
+def test_its_further_table_is_asked_for_and_refused_in_a_line():
+    from softafm.app.form import section, tables
+    from softafm.app.python_lines import python_lines
+
+    assert tables("load-curve")[4:] == ("ramp", "solver", "run")
+    (speed,) = section("ramp", None, "load-curve").fields.values()
+    assert (speed.unit, speed.default, speed.help) == ("m/s", "1 µm/s", "Speed of the tip, m/s.")
+    assert "ramp=Ramp(speed=2e-6)" in python_lines(FILE, Path())
+    assert "from test_modes import Ramp" in python_lines(FILE, Path())
+    without = {name: table for name, table in FILE.items() if name != "ramp"}
+    for ramp, line in (
+        ({}, "ramp: missing; add a table"),
+        ({"ramp": {"speed": "2 um"}}, "ramp.speed = '2 um': must be a speed with its unit"),
+        ({"ramp": {"sped": "2 um/s"}}, "ramp.sped: unknown key; did you mean 'speed'?"),
+        ({"mode": "force-distance", "ramp": {}}, "ramp: unknown key"),
+    ):
+        with pytest.raises(ConfigError, match="^" + re.escape(line)):
+            experiment_from({**without, **ramp}, Path())
 
 
 def test_results_of_a_mode_that_is_not_registered_are_refused(tmp_path):

@@ -22,8 +22,8 @@ _SYMBOLS = {
 _TYPICAL = "ldpe-tapping"
 """The bundled experiment from which examples are taken first."""
 
-_WITH_DEFAULT = ("cantilever", "motion", "solver", "run")
-"""Tables that need not say what they choose, which then is the first."""
+_WITHOUT_DEFAULT = ("tip", "sample", "surface", "surface.parts")
+"""Tables that must say what they choose; the others stand for the first choice if they do not."""
 
 
 @dataclass(frozen=True)
@@ -110,7 +110,8 @@ def tables(mode: object) -> tuple[str, ...]:
     """Return the tables that a mode has, in the order of the form and of a file."""
     known = MODES.get(str(mode))
     lever = ("cantilever",) if known is not None and known.lever else ()
-    return ("tip", "sample", "surface", *lever, "motion", "solver", "run")
+    further = () if known is None else tuple(known.tables)
+    return ("tip", "sample", "surface", *lever, "motion", *further, "solver", "run")
 
 
 def section(table: str, choice: object, mode: object) -> Section:
@@ -120,7 +121,7 @@ def section(table: str, choice: object, mode: object) -> Section:
     of a sum. A mode that does not exist has no motion to choose.
     """
     chooser, choices = _choices(table, mode)
-    default = next(iter(choices), "") if table in _WITH_DEFAULT else ""
+    default = next(iter(choices), "") if table not in _WITHOUT_DEFAULT else ""
     chosen = default if choice is None else choice
     if not isinstance(chosen, str) or chosen not in choices:
         return Section(table, chooser, tuple(choices), "", default)
@@ -136,8 +137,10 @@ def _choices(table: str, mode: object) -> tuple[str, Mapping[str, type[schema.Ta
     if table == "cantilever":
         made = schema.cantilever_of(MODES[str(mode)])
         return "", {} if made is None else {"": made}
+    known = MODES.get(str(mode))
+    if known is not None and table in known.tables:
+        return "", {"": schema.table_of(known.tables[table])}
     if table == "motion":
-        known = MODES.get(str(mode))
         return "shape", {} if known is None else schema.motions_of(known)
     chooser, choices = schema.CHOICES[table.partition(".")[0]]
     if table == "surface.parts":

@@ -73,8 +73,8 @@ def _documented(table: type[schema.Table]) -> tuple[Callable, ...]:
         return _STANDS_FOR[table]
     if issubclass(table, schema.Solver):
         return (table.solver,)
-    if issubclass(table, schema.Motion):
-        return (table.motion,)
+    if issubclass(table, schema.FieldsTable):
+        return (table.made,)
     if issubclass(table, schema.Thing):
         made = (_STANDS_FOR.get(make, (make,)) for make in table.constructors)
         return tuple(documented for several in made for documented in several)

@@ -48,10 +48,12 @@ def python_lines(document: Mapping[str, Any], folder: Path) -> str:
     else:
         given = mode.arguments(experiment.motion).items()
         arguments += [_argument(*each, written) for each in given if each[1] is not None]
+    arguments += [f"{name}={_source(made)}" for name, made in experiment.tables.items()]
     arguments += _options(experiment)
     lines.append(f"result = {_call(_name(mode.function), arguments)}")
     body = "\n".join(lines) + "\n"
-    return "\n".join(_imports(body, mode.function, type(experiment.motion))) + "\n\n" + body
+    made = (experiment.motion, *experiment.tables.values())
+    return "\n".join(_imports(body, mode.function, *map(type, made))) + "\n\n" + body
 
 
 def _imports(body: str, *used: Any) -> list[str]:

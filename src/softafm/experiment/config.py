@@ -13,7 +13,7 @@ from softafm.contact import Contact
 from softafm.experiment import schema
 from softafm.experiment.takers import refuse_result, refuse_unless
 from softafm.experiment.toml_text import parse
-from softafm.modes import MODES, Mode, Settings
+from softafm.modes import MODES, Inputs, Mode, Settings
 from softafm.modes.check import finer_run
 from softafm.modes.perform import simulate
 from softafm.modes.start import refuse_start_inside, refuse_unable, regularise_contact
@@ -45,6 +45,8 @@ class Experiment:
         An object from ``softafm.solvers``, or None for the default one.
     tolerance, profiles, check, regularise
         As in ``softafm.force_distance``.
+    tables
+        What the further tables of the mode describe, by name.
     document
         The file's tables as they were written, overrides included.
     """
@@ -58,7 +60,13 @@ class Experiment:
     profiles: bool = False
     check: bool = False
     regularise: float | None = None
+    tables: Mapping[str, Any] = field(default_factory=dict)
     document: Mapping[str, Any] = field(default_factory=dict, repr=False, compare=False)
+
+    @property
+    def inputs(self) -> Inputs:
+        """What the mode is applied to."""
+        return Inputs(self.contact, self.motion, self.cantilever, self.tables)
 
     def run(self, progress: bool | Callable[[float, str], None] | None = None) -> "Dataset":
         """Call the mode's public function and return its dataset.
@@ -77,8 +85,9 @@ class Experiment:
         lever = {"cantilever": self.cantilever} if mode.lever else {}
         with self._worded_as_written():
             return mode.function(
-                self.contact, **lever, **mode.arguments(self.motion), **options, progress=progress
-            )
+                self.contact, **lever, **mode.arguments(self.motion), **self.tables, **options,
+                progress=progress,
+            )  # fmt: skip
 
     def observables(self) -> dict[str, Any]:
         """Return what ``run`` observes by name, without its dataset: that takes a while of its own.
@@ -93,7 +102,8 @@ class Experiment:
         with self._worded_as_written():
             contact = regularise_contact(self.contact, self.regularise)
             settings = Settings(self.solver, self.tolerance)
-            found = simulate(MODES[self.mode], contact, self.motion, self.cantilever, settings)
+            inputs = self.inputs._replace(contact=contact)
+            found = simulate(MODES[self.mode], inputs, settings)
         return {name: values for name, (_, values) in found.data.items()}
 
     @contextmanager
@@ -242,15 +252,16 @@ def experiment_from(
     refuse_unless(document, "run")
     problems: list[str] = []
     name = document.get("mode")
-    known = ["mode", *_TABLES, "cantilever", *_OPTIONAL_TABLES]
-    problems += [unknown(key, known, key) for key in document if key not in known]
     mode = MODES.get(name) if isinstance(name, str) else None
+    further = () if mode is None else tuple(mode.tables)
+    known = ["mode", *_TABLES, "cantilever", *further, *_OPTIONAL_TABLES]
+    problems += [unknown(key, known, key) for key in document if key not in known]
     if name is None:
         problems.append(f"mode: missing; must be {one_of(list(MODES))}")
     elif mode is None:
         problems.append(f"mode = {shown(name)}: {nearest(name, list(MODES))}")
 
-    tables = [*_TABLES, *(each for each in _OPTIONAL_TABLES if each in document)]
+    tables = [*_TABLES, *further, *(each for each in _OPTIONAL_TABLES if each in document)]
     if mode is None:
         tables.remove("motion")
     elif mode.lever:
@@ -296,6 +307,7 @@ def experiment_from(
         profiles=run.profiles,
         check=run.check,
         regularise=run.regularise,
+        tables={each: built[each] for each in further},
         document=document,
     )
 
@@ -350,7 +362,7 @@ def _refuse_motion(contact: Contact, motion: Any, solver: Any, written: dict) ->
 def build_table(name: str, document: Mapping[str, Any], mode: Mode | None, folder: Path) -> Any:
     """Return the object that a table describes, having made sure that solvers can use it.
 
-    The mode matters for ``motion`` and ``cantilever`` alone.
+    The mode matters for ``motion``, ``cantilever`` and its further tables alone.
     """
     if name not in document:
         raise ConfigError([f"{name}: missing; add a table [{name}]"])
@@ -362,6 +374,8 @@ def build_table(name: str, document: Mapping[str, Any], mode: Mode | None, folde
     if name == "cantilever":
         table = schema.cantilever_of(mode) if mode is not None else None
         return schema.built(name, written, table or schema.LeverTable, folder=folder)
+    if mode is not None and name in mode.tables:
+        return schema.built(name, written, schema.table_of(mode.tables[name]), folder=folder)
     if name == "motion" and mode is not None:
         shapes = schema.motions_of(mode)
         default = next(iter(shapes))

@@ -93,7 +93,7 @@ def field_of(
     name = str(table)
     mode = MODES[document["mode"]]
     known = ["tip", "sample", "surface", "motion", "solver", "run"]
-    known += ["cantilever"] if mode.lever else []
+    known += [*(["cantilever"] if mode.lever else []), *mode.tables]
     if name not in known:
         raise ValueError(f"no table of this experiment; {nearest(name, known)}")
     chooser, choices = _choices(name, mode)
@@ -120,6 +120,8 @@ def _choices(name: str, mode: Mode) -> tuple[str, Mapping[str, Any]]:
         return "", {"": schema.Run}
     if name == "cantilever":
         return "", {"": schema.cantilever_of(mode)}
+    if name in mode.tables:
+        return "", {"": schema.table_of(mode.tables[name])}
     if name == "motion":
         return "shape", schema.motions_of(mode)
     return schema.CHOICES[name]

@@ -82,7 +82,7 @@ def _case(experiment: "Experiment") -> tuple["Contact", Foreseen]:
     """Return what comes in touch, and how."""
     contact = regularise_contact(experiment.contact, experiment.regularise)
     mode = MODES[experiment.mode]
-    return contact, mode.expect(contact, experiment.cantilever, experiment.motion)
+    return contact, mode.expect(experiment.inputs._replace(contact=contact))
 
 
 def _solver(experiment: "Experiment") -> Any:

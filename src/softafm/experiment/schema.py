@@ -542,13 +542,13 @@ _OF_PARAMETERS: dict[type, type[Table]] = {Sine: TapMotion}
 """Those that differ where a mode takes the parameters of a motion and not the motion."""
 
 
-class Motion(Table):
-    """A ``[motion]`` whose keys are the fields of a dataclass."""
+class FieldsTable(Table):
+    """A table whose keys are the fields of a dataclass."""
 
-    motion: ClassVar[type]
+    made: ClassVar[type]
 
     def build(self) -> Any:
-        return self.motion(**{key: getattr(self, key) for key in self.model_fields_set})
+        return self.made(**{key: getattr(self, key) for key in self.model_fields_set})
 
 
 @cache
@@ -558,20 +558,21 @@ def motions_of(mode: Mode) -> dict[str, type[Table]]:
     written |= _OF_A_BASE if mode.lever else {}
     written |= {} if mode.takes_motion else _OF_PARAMETERS
     return {
-        shape: written[motion] if motion in written else _motion(motion)
+        shape: written[motion] if motion in written else table_of(motion)
         for shape, motion in mode.motions.items()
     }
 
 
-def _motion(motion: type) -> type[Motion]:
-    """Return the table of a motion, a dataclass."""
-    types = get_type_hints(motion, include_extras=True)
+@cache
+def table_of(made: type) -> type[FieldsTable]:
+    """Return the table of a dataclass, with its units, defaults and docstring."""
+    types = get_type_hints(made, include_extras=True)
     keys: dict[str, Any] = {
         f.name: (_written(f.name, types[f.name]), ... if f.default is MISSING else f.default)
-        for f in fields(motion)
+        for f in fields(made)
     }
-    table = create_model(motion.__name__, __base__=Motion, **keys)
-    table.motion = motion
+    table = create_model(made.__name__, __base__=FieldsTable, **keys)
+    table.made = made
     return table
 
 

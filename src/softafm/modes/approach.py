@@ -19,7 +19,7 @@ from softafm.instrument.cantilever import Cantilever
 from softafm.instrument.motions import Sine
 from softafm.instrument.oscillator import Drive
 from softafm.modes.amplitude_curve import BRANCHES, AmplitudeCurve, Solutions
-from softafm.modes.mode import Axes, Foreseen, Mode, Row
+from softafm.modes.mode import Axes, Foreseen, Inputs, Mode, Row
 from softafm.modes.perform import Outcome, Settings, perform
 from softafm.modes.scales import Scales, tap_scales
 from softafm.modes.start import refuse_tapped_flow, solver_of
@@ -108,16 +108,14 @@ class AmplitudeSweep:
     drive_frequency: float | None = None
 
 
-def _simulate(
-    contact: Contact, cantilever: Cantilever | None, sweep: AmplitudeSweep, settings: Settings
-) -> Outcome:
+def _simulate(inputs: Inputs, settings: Settings) -> Outcome:
     """Sample taps, and find the solutions and the sweep of the height on them."""
-    assert cantilever is not None
+    contact, sweep = inputs.contact, inputs.motion
     tolerance, solver = tolerance_of(settings.tolerance), solver_of(settings.solver)
     refuse_tapped_flow(contact)
     ratios = _ratios(sweep.amplitude_ratio)
     free_amplitude = positive("free_amplitude", sweep.free_amplitude, "m")
-    drive, frequency = drive_of(cantilever, free_amplitude, sweep.drive_frequency)
+    drive, frequency = drive_of(inputs.cantilever, free_amplitude, sweep.drive_frequency)
 
     doubts: list[Placed] = []
 
@@ -151,7 +149,7 @@ def _simulate(
         "amplitude_ratio": ratios.tolist(),
         "drive_frequency": frequency,
     }
-    parts = {"motion": motion, "cantilever": cantilever}
+    parts = {**inputs.parts, "motion": motion}
     data, coordinates = _tables(curve, ratios, found)
     return Outcome(parts, solver, tolerance, data, coordinates, tuple(warned), {"taps": taps.taps})
 
@@ -291,17 +289,19 @@ def _ratios(values) -> np.ndarray:
     return array
 
 
-def _scale(contact: Contact, sweep: AmplitudeSweep, result: "Dataset") -> Scales:
+def _scale(inputs: Inputs, result: "Dataset") -> Scales:
     """Return the scales of taps of all amplitudes; heights count by the reach of the contact."""
+    contact, sweep = inputs.contact, inputs.motion
     amplitudes = _ratios(sweep.amplitude_ratio) * sweep.free_amplitude
     frequency = json.loads(result.attrs["experiment"])["motion"]["drive_frequency"]
     scales = tap_scales(contact, amplitudes, frequency, result)
     return replace(scales, fixed={**scales.fixed, "mean_height": contact.reach})
 
 
-def _foresee(contact: Contact, cantilever: Cantilever, sweep: AmplitudeSweep) -> Foreseen:
+def _foresee(inputs: Inputs) -> Foreseen:
     """Return the tap that goes deepest, and what drives the lever and can be fed by that."""
-    drive, frequency = drive_of(cantilever, sweep.free_amplitude, sweep.drive_frequency)
+    contact, sweep = inputs.contact, inputs.motion
+    drive, frequency = drive_of(inputs.cantilever, sweep.free_amplitude, sweep.drive_frequency)
     amplitudes = sweep.free_amplitude * np.array(sweep.amplitude_ratio)
     words = f"driven at {drive.detuning:.4g} of the resonance, Q = {drive.quality_factor:.4g}"
     most = readable(drive.most_dissipation, "J")

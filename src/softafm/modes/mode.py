@@ -4,6 +4,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
 from inspect import Parameter, signature
+from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, Literal, NamedTuple
 
 from softafm.checks.suggestions import call_also
@@ -15,12 +16,34 @@ if TYPE_CHECKING:
     from xarray import Dataset
 
     from softafm.contact import Contact
-    from softafm.instrument.cantilever import Cantilever
     from softafm.modes.perform import Outcome, Settings
     from softafm.solvers.history import History
 
 Values = Mapping[str, Any]
 """Numbers and arrays by the names of a mode's observables."""
+
+
+class Inputs(NamedTuple):
+    """What a mode is applied to.
+
+    Attributes
+    ----------
+    contact, motion, cantilever
+        What touches, one of the mode's ``motions``, and the ``Cantilever`` if the mode needs one.
+    tables
+        What the further ``tables`` of the mode describe, by name.
+    """
+
+    contact: "Contact"
+    motion: Any
+    cantilever: Any = None
+    tables: Mapping[str, Any] = MappingProxyType({})
+
+    @property
+    def parts(self) -> dict[str, Any]:
+        """What takes part besides the contact, as results describe it."""
+        lever = {} if self.cantilever is None else {"cantilever": self.cantilever}
+        return {"motion": self.motion, **lever, **self.tables}
 
 
 class Row(NamedTuple):
@@ -117,22 +140,25 @@ class Mode:
         Function of contact, motion and ``History`` that returns the values of the observables, for
         a mode that carries a contact through one motion.
     simulate
-        Function of contact, cantilever, motion and ``Settings`` that returns an ``Outcome``, for
-        one that does more.
+        Function of ``Inputs`` and ``Settings`` that returns an ``Outcome``, for one that does
+        more.
     path
         Function that turns what a ``[motion]`` describes into the motion of the tip, or of the
         base of its lever. By default it is that motion.
     lever
         ``"stiffness"`` or ``"resonator"``, with quality factor and frequency, if a lever carries
         the tip; else "".
+    tables
+        Further tables of an experiment file by name, each a dataclass like those of ``motions``.
+        The function takes what they describe as arguments of these names.
     steady
         Whether it needs cycles that repeat, as there are none on a sample that flows.
     scales
-        Function of contact, motion and the result of a finer run that returns the ``Scales`` on
-        which differences of observables count.
+        Function of ``Inputs`` and the result of a finer run that returns the ``Scales`` on which
+        differences of observables count.
     foresee
-        Function of contact, cantilever and motion that tells what a run will be like and cost; by
-        default it is that of ``path``.
+        Function of ``Inputs`` that returns what a run will be like and cost; by default as the
+        motion of ``path`` is and costs.
     axes
         What the observables lie over; by default they are single numbers.
     figure
@@ -154,12 +180,13 @@ class Mode:
     motions: Mapping[str, type]
     observables: Mapping[str, Observable]
     observe: "Callable[[Contact, Any, History], Values] | None" = None
-    simulate: "Callable[[Contact, Cantilever | None, Any, Settings], Outcome] | None" = None
+    simulate: "Callable[[Inputs, Settings], Outcome] | None" = None
     path: Callable[[Any], Any] = lambda motion: motion
     lever: Literal["", "stiffness", "resonator"] = ""
+    tables: Mapping[str, type] = field(default_factory=dict)
     steady: bool = False
-    scales: "Callable[[Contact, Any, Dataset], Scales]" = force_scales
-    foresee: "Callable[[Contact, Cantilever, Any], Foreseen] | None" = None
+    scales: "Callable[[Inputs, Dataset], Scales]" = force_scales
+    foresee: Callable[[Inputs], Foreseen] | None = None
     axes: Axes = _NUMBERS
     figure: Layout = _HISTORY
     diagnostics: tuple[str, ...] = ()
@@ -202,12 +229,9 @@ class Mode:
             return {"motion": motion}
         return {name: getattr(motion, name) for name in self.parameters if hasattr(motion, name)}
 
-    def expect(self, contact: "Contact", cantilever: "Cantilever | None", motion: Any) -> Foreseen:
+    def expect(self, inputs: Inputs) -> Foreseen:
         """Return what a run will be like."""
-        if self.foresee is None:
-            return Foreseen(self.path(motion))
-        assert cantilever is not None or not self.lever
-        return self.foresee(contact, cantilever, motion)  # type: ignore[arg-type]
+        return Foreseen(self.path(inputs.motion)) if self.foresee is None else self.foresee(inputs)
 
 
 MODES: dict[str, Mode] = {}

@@ -2,12 +2,13 @@
 
 from collections.abc import Mapping
 from functools import partial
+from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from softafm.contact import Contact
 from softafm.instrument.cantilever import Cantilever
 from softafm.modes.check import compare_with_finer, finer_run
-from softafm.modes.mode import MODES, Mode
+from softafm.modes.mode import MODES, Inputs, Mode
 from softafm.modes.start import carry, refuse_other_than_cantilever, regularise_contact
 from softafm.progress import Progress
 from softafm.results.content import HISTORY
@@ -48,6 +49,7 @@ def perform(
     motion: Any,
     cantilever: Cantilever | None = None,
     *,
+    tables: Mapping[str, Any] = MappingProxyType({}),
     solver=None,
     tolerance: float = 1e-2,
     profiles: bool = False,
@@ -61,8 +63,8 @@ def perform(
     ----------
     mode
         The record of the mode, which has been registered.
-    contact, motion, cantilever
-        What touches, one of the mode's ``motions``, and the lever if the mode needs one.
+    contact, motion, cantilever, tables
+        The ``Inputs``.
     solver, tolerance, profiles, progress, check, regularise
         As for ``force_distance``.
 
@@ -79,24 +81,22 @@ def perform(
         refuse_other_than_cantilever(cantilever)
     finer = finer_run(check, solver, tolerance)
     given, contact = contact, regularise_contact(contact, regularise)
-    found = simulate(
-        mode, contact, motion, cantilever, Settings(solver, tolerance, profiles, progress)
-    )
+    inputs = Inputs(contact, motion, cantilever, tables)
+    found = simulate(mode, inputs, Settings(solver, tolerance, profiles, progress))
     result = dataset(mode.name, contact, *found)
     record_regularisation(result, given, contact, regularise)
     if finer is not None:
-        repeat = partial(perform, mode, contact, motion, cantilever)
-        scales = partial(mode.scales, contact, motion)
+        repeat = partial(perform, mode, contact, motion, cantilever, tables=tables)
+        scales = partial(mode.scales, inputs)
         compare_with_finer(mode, result, finer, found.tolerance, scales, repeat, progress)
     return result
 
 
-def simulate(
-    mode: Mode, contact: Contact, motion: Any, cantilever: Cantilever | None, settings: Settings
-) -> Outcome:
+def simulate(mode: Mode, inputs: Inputs, settings: Settings) -> Outcome:
     """Run a mode on a contact as it is; return what it gave, of which no dataset is made."""
     if mode.simulate is not None:
-        return mode.simulate(contact, cantilever, motion, settings)
+        return mode.simulate(inputs, settings)
+    contact, motion, cantilever, _ = inputs
     lever = {} if cantilever is None else {"stiffness": cantilever.stiffness}
     solver, tolerance, history = carry(contact, mode.path(motion), *settings, **lever)
     data, coordinates = history_variables(contact, history)
@@ -105,8 +105,7 @@ def simulate(
         name: (mode.observables[name].dims, values)
         for name, values in mode.observe(contact, motion, history).items()
     }
-    parts = {"motion": motion, **({} if cantilever is None else {"cantilever": cantilever})}
     data = {name: data[name] for name in HISTORY} | observed | data  # shapes of the surface last
     return Outcome(
-        parts, solver, tolerance, data, coordinates, history.warnings, history.diagnostics
+        inputs.parts, solver, tolerance, data, coordinates, history.warnings, history.diagnostics
     )

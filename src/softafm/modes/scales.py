@@ -9,6 +9,8 @@ import numpy as np
 if TYPE_CHECKING:
     from xarray import Dataset
 
+    from softafm.modes.mode import Inputs
+
 _TAP = 0.02
 """Part of force times amplitude below which the energy of a tap counts as none."""
 
@@ -36,13 +38,13 @@ class Scales:
         return np.maximum(np.abs(values), self.least.get(unit, 0.0))
 
 
-def force_scales(contact: Any, motion: Any, result: "Dataset") -> Scales:
+def force_scales(inputs: "Inputs", result: "Dataset") -> Scales:
     """Return the scales of a force curve.
 
     Those of force and energy are the largest force, and its work over the reach of the contact.
     """
-    force = largest_force(result)
-    return Scales({"N": force, "J": force * contact.reach, "m": contact.reach})
+    force, reach = largest_force(result), inputs.contact.reach
+    return Scales({"N": force, "J": force * reach, "m": reach})
 
 
 def tap_scales(contact: Any, amplitude: Any, frequency: float, result: "Dataset") -> Scales:

@@ -121,7 +121,9 @@ MODE = Mode(
         **observables("cycle_virial", "cycle_dissipation", over=("cycle",)),
     },
     observe=observe_taps,
-    scales=lambda contact, tap, result: tap_scales(contact, tap.amplitude, tap.frequency, result),
+    scales=lambda given, result: tap_scales(
+        given.contact, given.motion.amplitude, given.motion.frequency, result
+    ),
     figure=Layout(
         title=(
             ("virial", "virial"),
