@@ -9,21 +9,21 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from softafm.checks.kinds import list_of
-from softafm.draw.approach import approach_curve
-from softafm.draw.histories import AXES, felt, moved, strokes
+from softafm.draw.approach import draw_approach_curve
+from softafm.draw.histories import AXES, find_force, name_moved, split_strokes
 from softafm.draw.style import (
     APPROACH,
     COLOURS,
     HOLLOW,
     RETRACT,
-    colours,
-    factor_of,
-    label_of,
-    labels_of,
-    quantity,
-    run_entries,
-    stroke_entries,
+    choose_colours,
+    choose_factor,
+    choose_labels,
+    make_run_entries,
+    make_stroke_entries,
     tidy,
+    typeset,
+    write_label,
 )
 
 __all__ = ["COLOURS", "plot"]
@@ -56,7 +56,7 @@ def plot(
         labels is not that of datasets.
     """
     runs = list_of("datasets", datasets, xr.Dataset, "a result of softafm, an xarray.Dataset")
-    names = labels_of("dataset", runs, labels, (f"run {i + 1}" for i in range(len(runs))))
+    names = choose_labels("dataset", runs, labels, (f"run {i + 1}" for i in range(len(runs))))
     modes = sorted({str(run.attrs.get("mode")) for run in runs})
     figures = {
         "force-distance": _force_distance,
@@ -64,7 +64,7 @@ def plot(
         "tapping-cycle": _tapping_cycle,
         "amplitude-modulation": _maps,
         "force-volume": _maps,
-        "approach-curve": approach_curve,
+        "approach-curve": draw_approach_curve,
     }
     if len(modes) == 1 and modes[0] in figures:
         return figures[modes[0]](runs, names)
@@ -84,7 +84,7 @@ def _force_distance(runs: list[xr.Dataset], names: list[str]) -> Figure:
     figure = Figure(figsize=(6.4, 4.4), dpi=150, layout="constrained")
     ax = figure.add_subplot()
     _draw(ax, runs, "tip_height")
-    ax.legend(handles=run_entries(names) + _stroke_entries(runs), frameon=False)
+    ax.legend(handles=make_run_entries(names) + _stroke_entries(runs), frameon=False)
     return figure
 
 
@@ -101,7 +101,7 @@ def _force_spectroscopy(runs: list[xr.Dataset], names: list[str]) -> Figure:
     _crop(against_time, runs, "time")
     _crop(against_base, runs, "base_height", "tip_height")
     against_time.set_title(_duration(runs), size=10)
-    entries = run_entries(names) + _stroke_entries(runs)
+    entries = make_run_entries(names) + _stroke_entries(runs)
     columns = min(len(entries), 6)
     figure.legend(handles=entries, loc="outside lower center", ncols=columns, frameon=False)
     return figure
@@ -122,7 +122,9 @@ def _tapping_cycle(runs: list[xr.Dataset], names: list[str]) -> Figure:
         against_height.set_title(_summary(runs[0]), size=10)
     else:
         summaries = [f"{name}: {_summary(run)}" for name, run in zip(names, runs, strict=True)]
-        figure.legend(handles=run_entries(summaries), loc="outside lower center", frameon=False)
+        figure.legend(
+            handles=make_run_entries(summaries), loc="outside lower center", frameon=False
+        )
     return figure
 
 
@@ -134,8 +136,8 @@ def _draw(ax: Axes, runs: list[xr.Dataset], abscissa: str, ordinate: str = "forc
         ax.axvline(0, color="0.75", linewidth=0.8, zorder=0)
     for index, run in enumerate(runs):
         x, y = x_scale * run[abscissa].values, y_scale * run[ordinate].values
-        approach_colour, retract_colour = colours(index, len(runs))
-        for stroke, falling in strokes(run[moved(run)].values):
+        approach_colour, retract_colour = choose_colours(index, len(runs))
+        for stroke, falling in split_strokes(run[name_moved(run)].values):
             ax.plot(
                 x[stroke],
                 y[stroke],
@@ -151,14 +153,14 @@ def _draw(ax: Axes, runs: list[xr.Dataset], abscissa: str, ordinate: str = "forc
             zorder=3,
             **HOLLOW,
         )
-    ax.set_xlabel(label_of(*AXES[abscissa], x_scale), fontsize=11)
-    ax.set_ylabel(label_of(*AXES[ordinate], y_scale), fontsize=11)
+    ax.set_xlabel(write_label(*AXES[abscissa], x_scale), fontsize=11)
+    ax.set_ylabel(write_label(*AXES[ordinate], y_scale), fontsize=11)
     tidy(ax)
 
 
 def _stroke_entries(runs: list[xr.Dataset]) -> list[Line2D]:
     """Legend entries of strokes by line style, and of elastic jumps if there are any."""
-    entries = stroke_entries(len(runs))
+    entries = make_stroke_entries(len(runs))
     if any(run["jump_time"].size for run in runs):
         entries.append(Line2D([], [], color="black", label="elastic jump", **HOLLOW))
     return entries
@@ -167,24 +169,24 @@ def _stroke_entries(runs: list[xr.Dataset]) -> list[Line2D]:
 def _summary(run: xr.Dataset) -> str:
     """What a tap does to the oscillation, and how hard it hits."""
     return (
-        f"virial {quantity(float(run['virial']), 'J')}, "
-        f"dissipation {quantity(float(run['dissipation']), 'J')}, "
-        f"peak force {quantity(float(run['force_max']), 'N')}"
+        f"virial {typeset(float(run['virial']), 'J')}, "
+        f"dissipation {typeset(float(run['dissipation']), 'J')}, "
+        f"peak force {typeset(float(run['force_max']), 'N')}"
     )
 
 
 def _crop(ax: Axes, runs: list[xr.Dataset], *variables: str) -> None:
     """Show, with a margin, only where the force exceeds a hundredth of its largest."""
-    low, high = felt(runs, *variables)
+    low, high = find_force(runs, *variables)
     scale = _scale(runs, variables[0])
     ax.set_xlim(scale * low, scale * high)
 
 
 def _duration(runs: list[xr.Dataset]) -> str:
     duration = max(float(np.ptp(run["time"].values)) for run in runs)
-    return f"Interaction only; the run lasts {quantity(duration, 's')}"
+    return f"Interaction only; the run lasts {typeset(duration, 's')}"
 
 
 def _scale(runs: list[xr.Dataset], variable: str) -> float:
     """Factor from SI to the prefix that suits the largest value of all runs."""
-    return factor_of(*(run[variable].values for run in runs))
+    return choose_factor(*(run[variable].values for run in runs))

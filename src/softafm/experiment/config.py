@@ -7,8 +7,8 @@ from importlib import resources
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from softafm.checks.paths import why_no_file
-from softafm.checks.refusals import ConfigError, as_written, nearest, one_of, shown, unknown
+from softafm.checks.paths import explain_no_file
+from softafm.checks.refusals import ConfigError, nearest, one_of, refuse_unknown, reword, shown
 from softafm.contact import Contact
 from softafm.experiment import schema
 from softafm.experiment.takers import refuse_result, refuse_unless
@@ -130,7 +130,7 @@ class Experiment:
             yield
         except ValueError as error:
             for table in ("motion", "run"):
-                line = as_written(table, self.document.get(table, {}), error)
+                line = reword(table, self.document.get(table, {}), error)
                 if line is not None:
                     raise ConfigError([line]) from error
             raise
@@ -183,7 +183,7 @@ def load_document(path: str | Path) -> dict[str, Any]:
     try:
         refuse_result(path)
         if not path.is_file():
-            raise ConfigError([f"{name}: {why_no_file(path)}"])
+            raise ConfigError([f"{name}: {explain_no_file(path)}"])
         size = path.stat().st_size
         if size > LARGEST_FILE:
             raise ConfigError(
@@ -270,7 +270,7 @@ def experiment_from(
     problems: list[str] = []
     mode = document.get("mode")
     known = ["mode", *_TABLES, "cantilever", *_OPTIONAL_TABLES]
-    problems += [unknown(key, known, key) for key in document if key not in known]
+    problems += [refuse_unknown(key, known, key) for key in document if key not in known]
     modes = list(schema.MOTIONS)
     if mode is None:
         problems.append(f"mode: missing; must be {one_of(modes)}")
@@ -369,7 +369,7 @@ def _refuse_motion(contact: Contact, motion: Any, solver: Any, written: dict) ->
     try:
         refuse_unable(solver, motion)
     except ValueError as error:
-        raise ConfigError([as_written("motion", written, error) or str(error)]) from None
+        raise ConfigError([reword("motion", written, error) or str(error)]) from None
 
 
 def build_table(name: str, document: Mapping[str, Any], mode: Any, folder: Path) -> Any:

@@ -6,15 +6,20 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 from rich.table import Table
 
-from softafm.draw.summary import misfit_in_words, regularised_in_words, slowed_in_words, table_of
+from softafm.draw.summary import (
+    describe_misfit,
+    describe_regularisation,
+    describe_slowing,
+    make_table,
+)
 from softafm.instrument.motions import lowest_height
 from softafm.modes.approach import deepest_tap, drive_of
 from softafm.modes.start import regularised
-from softafm.results.datasets import edge_slowed
+from softafm.results.datasets import compute_edge_slowing
 from softafm.rheology.represented import Represented
 from softafm.solvers.energy import Energy, cohesive_lengths_crossed
 from softafm.tips import Paraboloid
-from softafm.units.quantities import readable
+from softafm.units.quantities import write_quantity
 
 if TYPE_CHECKING:
     from softafm.contact import Contact
@@ -51,7 +56,7 @@ class _Case(NamedTuple):
 
 def regime(experiment: "Experiment") -> Table:
     """Return a table of the numbers that say how a contact will behave and what it will cost."""
-    table = table_of(f"{experiment.mode}, before any run")
+    table = make_table(f"{experiment.mode}, before any run")
     for row in rows(experiment):
         table.add_row(*row)
     return table
@@ -72,17 +77,17 @@ def rows(experiment: "Experiment") -> list[Row]:
     carried = experiment.cantilever is not None and drive is None
     where = "above the undeformed surface" + (", lever unbent" if carried else "")
     where = "of a tap: Hertz against the drive" if drive else where
-    found.append(Row("lowest tip height", readable(lowest, "m"), where))
+    found.append(Row("lowest tip height", write_quantity(lowest, "m"), where))
     theory = "JKR" if contact.adhesive else "without adhesion"
     expected = f"{theory}, {_slow(contact)}, at the lowest height"
     words = expected if radius else "none is expected to last"
-    found.append(Row("contact radius", readable(radius, "m"), words))
+    found.append(Row("contact radius", write_quantity(radius, "m"), words))
     if carried:
         _add_lever(found, contact, experiment.cantilever.stiffness, radius)
     if drive:
         _add_drive(found, drive)
     whole = "tap" if drive else "motion"
-    found.append(Row(f"time of the {whole}", readable(last - first, "s"), ""))
+    found.append(Row(f"time of the {whole}", write_quantity(last - first, "s"), ""))
     _add_sample(found, contact, last - first, whole)
     cost = _cost_in_words(_seconds(experiment, case))
     found.append(Row("expected cost", cost, _cost_of(experiment, case)))
@@ -137,13 +142,13 @@ def _add_tip(found: list[Row], contact: "Contact") -> None:
     name, words = "effective radius", f"of the {contact.tip.kind}, where it is one reach high"
     if isinstance(contact.tip, Paraboloid):
         name, words = "tip radius", contact.tip.kind
-    found.append(Row(name, readable(contact.effective_radius, "m"), words))
+    found.append(Row(name, write_quantity(contact.effective_radius, "m"), words))
 
 
 def _add_adhesion(found: list[Row], contact: "Contact") -> None:
     """Tell how soft the contact is for its adhesion, and how wide the tension zone."""
     law = contact.surface
-    work = readable(law.work_of_adhesion, "J/m²")
+    work = write_quantity(law.work_of_adhesion, "J/m²")
     if not contact.adhesive:
         found.append(Row("work of adhesion", work, f"{law.kind}: no adhesion"))
         return
@@ -154,7 +159,7 @@ def _add_adhesion(found: list[Row], contact: "Contact") -> None:
         ("fast", contact.cohesive_length_instantaneous),
         ("slow", contact.cohesive_length),
     ):
-        value = readable(length, "m") if length else _FLOWS
+        value = write_quantity(length, "m") if length else _FLOWS
         found.append(Row(f"cohesive length, {when}", value, "tension zone at the edge"))
     found.append(Row("work of adhesion", work, f"{law.kind}: per area, to part the surfaces"))
 
@@ -164,9 +169,9 @@ def _add_regularisation(found: list[Row], experiment: "Experiment", contact: "Co
     given = experiment.contact
     if experiment.regularise is not None:
         length = contact.surface.range
-        words = regularised_in_words(given.tabor_softened, given.surface.range, length)
-        words += slowed_in_words(edge_slowed(given, length))
-        found.append(Row("range", readable(length, "m"), words))
+        words = describe_regularisation(given.tabor_softened, given.surface.range, length)
+        words += describe_slowing(compute_edge_slowing(given, length))
+        found.append(Row("range", write_quantity(length, "m"), words))
     elif given.tabor_softened > _SOFT:
         length = given.surface.range * given.tabor_softened / _ADVISED
         try:
@@ -174,8 +179,8 @@ def _add_regularisation(found: list[Row], experiment: "Experiment", contact: "Co
             words = "would enlarge the range from {} to {}"
         except ValueError:
             words = "is not possible with this law, whose range is {}; one of {} would do"
-        words = words.format(readable(given.surface.range, "m"), readable(length, "m"))
-        words += slowed_in_words(edge_slowed(given, length))
+        words = words.format(write_quantity(given.surface.range, "m"), write_quantity(length, "m"))
+        words += describe_slowing(compute_edge_slowing(given, length))
         found.append(Row("regularise", f"{_ADVISED:g}", words))
 
 
@@ -184,13 +189,15 @@ def _add_sample(found: list[Row], contact: "Contact", duration: float, whole: st
     sample = contact.sample
     creep = sample.reduced_compliance
     times = creep.retardation_times
-    fast, late = (readable(1 / float(sample.creep_compliance(t)), "Pa") for t in (0, duration))
+    fast, late = (
+        write_quantity(1 / float(sample.creep_compliance(t)), "Pa") for t in (0, duration)
+    )
     softer = f"; {late} after the {whole}" if times.size or creep.fluidity else ""
     found.append(Row("Young's modulus", fast, sample.kind + softer))
     if sample.dma_misfit:
-        found.append(Row(*misfit_in_words(*sample.dma_misfit)))
+        found.append(Row(*describe_misfit(*sample.dma_misfit)))
     if isinstance(sample, Represented):
-        ends = " to ".join(readable(time, "s") for time in sample.window)
+        ends = " to ".join(write_quantity(time, "s") for time in sample.window)
         words = f"to {100 * sample.represented_error:.2g} %, from {ends}"
         if duration > sample.window[1]:
             words += f"; the {whole} outlasts it: enlarge the window"
@@ -199,19 +206,19 @@ def _add_sample(found: list[Row], contact: "Contact", duration: float, whole: st
         found.append(Row("represented by", _modes(sample.mode_count), words))
     elif times.size > _FEW:
         share = float(creep.modes @ -np.expm1(-duration / times) / creep.modes.sum())
-        ends = f"{readable(times.min(), 's')} to {readable(times.max(), 's')}"
+        ends = f"{write_quantity(times.min(), 's')} to {write_quantity(times.max(), 's')}"
         words = f"{ends}; {share:.2g} of their creep in the {whole}"
         found.append(Row("creep times", _modes(times.size), words))
     else:
         for time in map(float, times):
             words = _creep_in_words(time / duration, whole)
-            found.append(Row("creep time", readable(time, "s"), words))
+            found.append(Row("creep time", write_quantity(time, "s"), words))
     if creep.fluidity:
         viscosity = (1 - sample.poisson**2) / creep.fluidity
         shear = viscosity / (2 * (1 + sample.poisson))
-        words = f"in tension, {readable(shear, 'Pa')} s in shear; flow without end"
+        words = f"in tension, {write_quantity(shear, 'Pa')} s in shear; flow without end"
         words = "of the modes, beyond the window" if isinstance(sample, Represented) else words
-        found.append(Row("viscosity", f"{readable(viscosity, 'Pa')} s", words))
+        found.append(Row("viscosity", f"{write_quantity(viscosity, 'Pa')} s", words))
 
 
 def _modes(count: int) -> str:
@@ -221,31 +228,35 @@ def _modes(count: int) -> str:
 def _slow(contact: "Contact") -> str:
     """Tell which modulus stands for the long run."""
     if contact.sample.reduced_compliance.fluidity:
-        return f"at {readable(contact.softened_modulus, 'Pa')} as flow sets in"
+        return f"at {write_quantity(contact.softened_modulus, 'Pa')} as flow sets in"
     return "slow"
 
 
 def _add_lever(found: list[Row], contact: "Contact", lever: float, radius: float) -> None:
     """Compare the lever, N/m, with what pulls it in and with what it presses on."""
-    found.append(Row("lever stiffness", readable(lever, "N/m"), ""))
+    found.append(Row("lever stiffness", write_quantity(lever, "N/m"), ""))
     attraction = contact.steepest_attraction
     words = "softer, the lever snaps in" if lever < attraction else "the lever is stiffer"
     words = words if contact.surface.attracts else "the law only repels"
-    found.append(Row("steepest attraction", readable(attraction, "N/m"), f"undeformed; {words}"))
+    found.append(
+        Row("steepest attraction", write_quantity(attraction, "N/m"), f"undeformed; {words}")
+    )
     if radius:
         stiffness = 2 * radius * contact.softened_modulus
         share = stiffness / (stiffness + lever)
         words = f"2·E·a, {_slow(contact)}; lever bends by {share:.0%} of the way"
-        found.append(Row("contact stiffness", readable(stiffness, "N/m"), words))
+        found.append(Row("contact stiffness", write_quantity(stiffness, "N/m"), words))
 
 
 def _add_drive(found: list[Row], drive: "Drive") -> None:
     """Tell what drives the lever, and what that can hold and feed."""
-    found.append(Row("lever stiffness", readable(drive.stiffness, "N/m"), ""))
+    found.append(Row("lever stiffness", write_quantity(drive.stiffness, "N/m"), ""))
     words = f"driven at {drive.detuning:.4g} of the resonance, Q = {drive.quality_factor:.4g}"
-    found.append(Row("free amplitude", readable(drive.free_amplitude, "m"), words))
-    found.append(Row("force of the drive", readable(drive.force, "N"), "amplitude, on the tip"))
-    most = readable(drive.most_dissipation, "J")
+    found.append(Row("free amplitude", write_quantity(drive.free_amplitude, "m"), words))
+    found.append(
+        Row("force of the drive", write_quantity(drive.force, "N"), "amplitude, on the tip")
+    )
+    most = write_quantity(drive.most_dissipation, "J")
     found.append(Row("largest dissipation", most, "that the drive can feed, a cycle"))
 
 

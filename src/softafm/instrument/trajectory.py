@@ -187,9 +187,7 @@ class Trajectory:
             )
         if noise > _FAR * misfit + _INVISIBLE:
             where = "in place of the estimate" if self._noise_is_estimated else "or leave it out"
-            return (
-                f"{found}so large a noise hides motion; state noise = {misfit:.2g} m, {where}",
-            )
+            return (f"{found}so large a noise hides motion; state noise = {misfit:.2g} m, {where}",)
         corners, knots = self.corners.size, self._path.x.size
         if corners >= _FEW_CORNERS and knots > _MANY_KNOTS * corners:
             return (

@@ -29,7 +29,7 @@ from softafm.modes.tap_map import OBSERVABLES, TapMap
 from softafm.modes.tapping import tap_observables
 from softafm.progress import Progress, reporting
 from softafm.results.datasets import curve_dataset, record_regularisation
-from softafm.units.quantities import readable
+from softafm.units.quantities import write_quantity
 
 if TYPE_CHECKING:
     from xarray import Dataset
@@ -186,7 +186,7 @@ def doubt_sine(drive: Drive, amplitude, virial, dissipation) -> AccuracyWarning 
     worst = int(shares.argmax())
     if shares[worst] <= _SINE:
         return None
-    off = readable(float(shares[worst] * np.atleast_1d(amplitude)[worst]), "m")
+    off = write_quantity(float(shares[worst] * np.atleast_1d(amplitude)[worst]), "m")
     text = (
         f"the lever does not move as the sine that is assumed: its second harmonic is {off}, "
         f"{shares[worst]:.2g} of the amplitude, at quality_factor = {drive.quality_factor:g} and "
@@ -199,8 +199,8 @@ def doubt_sine(drive: Drive, amplitude, virial, dissipation) -> AccuracyWarning 
 
 def _where(tap: tuple[float, float]) -> str:
     amplitude, approach = tap
-    height = readable(amplitude + approach, "m")
-    return f"amplitude {readable(amplitude, 'm')} and mean height {height}"
+    height = write_quantity(amplitude + approach, "m")
+    return f"amplitude {write_quantity(amplitude, 'm')} and mean height {height}"
 
 
 def _checked(found: Solutions) -> np.ndarray:
