@@ -235,3 +235,12 @@ def test_documents_install_a_copy_of_the_repository_as_it_is_not_published():
         assert all(target.startswith(".") for target in targets), name
     for name in ("README.md", "index.md", "page.md"):
         assert "not on PyPI" in texts[name]
+
+
+def test_lines_of_prose_are_wrapped():
+    pages = [DOCS.parent / "README.md", DOCS.parent / "CONTRIBUTING.md", *DOCS.rglob("*.md")]
+    for page in pages:
+        text = page.read_text(encoding="utf-8")
+        prose = re.sub(r"```.*?```", "", text, flags=re.S)
+        long = [line for line in prose.splitlines() if len(line) > 100 and line[0] not in "|!"]
+        assert not long, f"{page.name}: wrap with tools/wrap.py"
