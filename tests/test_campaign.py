@@ -11,15 +11,17 @@ from softafm.checks.refusals import ConfigError
 from softafm.experiment.config import document_from, example_text, experiment_from
 from softafm.modes import MODES
 from softafm.sweeps.block import DONE, FAILED, WARNED, Work
-from softafm.sweeps.reading import campaign_of, table_of
-from softafm.sweeps.sweep import planned
+from softafm.sweeps.reading import make_campaign, read_table
+from softafm.sweeps.sweep import plan
 
 TAP = document_from(example_text("ldpe-tapping"), "ldpe-tapping")
 EXAMPLES = ("attard-triangle", "ldpe-spectroscopy", "ldpe-tapping")
 
 
 def campaign(sweep, document=TAP, what=None):
-    return campaign_of(document if what is None else what, Path(), table_of(sweep), from_file=True)
+    return make_campaign(
+        document if what is None else what, Path(), read_table(sweep), from_file=True
+    )
 
 
 def refused(sweep, document=TAP, what=None):
@@ -69,7 +71,7 @@ def test_a_file_of_a_campaign_is_read(tmp_path):
         "motion.mean_height = { from = '38 nm', to = '58 nm', points = 3 }\n"
     )
     (tmp_path / "c.toml").write_text(text, encoding="utf-8")
-    found, batch = planned(tmp_path / "c.toml", ["sweep.observables=['dissipation']"])
+    found, batch = plan(tmp_path / "c.toml", ["sweep.observables=['dissipation']"])
     assert found.dimensions == ("E_inf", "radius", "amplitude_mean_height")
     assert (found.shape, batch) == ((1, 2, 3), 7)
     assert [observable.name for observable in found.observables] == ["dissipation"]

@@ -364,3 +364,12 @@ def test_a_motion_of_a_plain_class_is_the_same_path_by_points(extending):
     for name in ("force_min", "force_max", "loop_energy"):
         assert float(one[name]) == pytest.approx(float(two[name]), rel=2e-3)
     assert json.loads(one.attrs["experiment"])["motion"]["decay"] == 1e-4
+
+
+def test_lines_of_prose_are_wrapped():
+    pages = [DOCS.parent / "README.md", DOCS.parent / "CONTRIBUTING.md", *DOCS.rglob("*.md")]
+    for page in pages:
+        text = page.read_text(encoding="utf-8")
+        prose = re.sub(r"```.*?```", "", text, flags=re.S)
+        long = [line for line in prose.splitlines() if len(line) > 100 and line[0] not in "|!"]
+        assert not long, f"{page.name}: wrap with tools/wrap.py"

@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 
 from softafm.checks.refusals import ConfigError
-from softafm.checks.suggestions import meant
+from softafm.checks.suggestions import guess
 from softafm.experiment import schema
 from softafm.experiment.config import document_from, example_text, experiment_from
 from softafm.modes import MODES
@@ -67,7 +67,7 @@ TAP = list(schema.TapMotion.model_fields)
     ],
 )
 def test_what_is_meant(given, valid, expected):
-    assert meant(given, valid) == expected
+    assert guess(given, valid) == expected
 
 
 def test_every_other_word_leads_to_a_name_that_exists():

@@ -18,7 +18,9 @@ def members(protocol: type) -> tuple[str, ...]:
 def refuse_other(name: str, value: Any, kind: type | tuple[type, ...], wanted: str) -> None:
     """Raise ValueError if ``value`` is no instance of a class; ``wanted`` says in words of what."""
     if not isinstance(value, kind):
-        raise ValueError(f"{name} = {_given(value)}: must be {wanted}{_call(value)}")
+        raise ValueError(
+            f"{name} = {_describe_given(value)}: must be {wanted}{_describe_call(value)}"
+        )
 
 
 def refuse_incomplete(name: str, value: Any, needed: Sequence[str], wanted: str) -> None:
@@ -29,7 +31,9 @@ def refuse_incomplete(name: str, value: Any, needed: Sequence[str], wanted: str)
     if not missing and not isinstance(value, type):
         return
     lacks = f"; it has no {all_of(missing)}" if 0 < len(missing) < len(needed) else ""
-    raise ValueError(f"{name} = {_given(value)}: must be {wanted}{lacks}{_call(value)}")
+    raise ValueError(
+        f"{name} = {_describe_given(value)}: must be {wanted}{lacks}{_describe_call(value)}"
+    )
 
 
 def refuse_non_dataset(name: str, value: Any) -> None:
@@ -51,20 +55,20 @@ def list_of(name: str, value: Any, kind: type, wanted: str) -> list:
     return found
 
 
-def _callable(value: Any) -> bool:
+def _is_callable(value: Any) -> bool:
     return isinstance(value, type) or isroutine(value)
 
 
-def _given(value: Any) -> str:
+def _describe_given(value: Any) -> str:
     """Return a value as the user would recognise it: of a function or class its name."""
-    if not _callable(value):
+    if not _is_callable(value):
         return " ".join(shown(value).split())
     return f"<{'class' if isinstance(value, type) else 'function'} {value.__qualname__}>"
 
 
-def _call(value: Any) -> str:
+def _describe_call(value: Any) -> str:
     """Say how to call a function or class that was given in place of what it makes."""
-    if not _callable(value):
+    if not _is_callable(value):
         return ""
     room = "softafm.samples." if value.__module__ == "softafm.samples" else ""
     try:

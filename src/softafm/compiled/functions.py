@@ -72,7 +72,7 @@ def compile_for(signature: Any, **options: Any) -> Callable[[Callable], Any]:
             raise RuntimeError(f"{function.__code__.co_filename} is not in store.ROOMS")
         dispatcher = njit(**(_OPTIONS | _NO_MEMORY | options))(function)
         dispatcher._cache = _Store(function)
-        with store.in_turn():
+        with store.take_turns():
             dispatcher.compile(signature)
         dispatcher.disable_compile()
         return dispatcher
@@ -171,7 +171,7 @@ class CompiledFunction(types.WrapperAddressProtocol):
 
 
 @typeof_impl.register(CompiledFunction)
-def _type_of(function, context):
+def _find_type(function, context):
     return function.numba_type
 
 
@@ -194,15 +194,15 @@ def compiled(signature: Any) -> Callable[[Callable], CompiledFunction]:
 
 
 @cache
-def pressure_functions(shapes: tuple[Shape, ...]) -> tuple[CompiledFunction, CompiledFunction]:
+def compile_pressure(shapes: tuple[Shape, ...]) -> tuple[CompiledFunction, CompiledFunction]:
     """Compile the sum of laws ``f(gap, ...) -> (pressure, slope, potential)``: p and Φ.
 
     ``shapes`` are those of the law's terms. The functions' parameters are the origin that gaps are
     counted from, m, then those of the terms.
     """
     arguments, gap = "gap, parameters, pressure, slope, n", "gap[i] + parameters[0]"
-    pressure = _loop(shapes, arguments, gap, 1, ("pressure", "slope", ""))
-    potential = _loop(shapes, "gap, parameters, potential, n", gap, 1, ("", "", "potential"))
+    pressure = _write_loop(shapes, arguments, gap, 1, ("pressure", "slope", ""))
+    potential = _write_loop(shapes, "gap, parameters, potential, n", gap, 1, ("", "", "potential"))
     on_disk = all(map(_is_ours, shapes))
     return (
         CompiledFunction(pressure, PRESSURE, on_disk),
@@ -211,18 +211,18 @@ def pressure_functions(shapes: tuple[Shape, ...]) -> tuple[CompiledFunction, Com
 
 
 @cache
-def profile_function(shape: Shape) -> CompiledFunction:
+def compile_profile(shape: Shape) -> CompiledFunction:
     """Compile a tip profile ``f(radius, ...) -> height``."""
-    profile = _loop((shape,), "radius, parameters, profile, n", "radius[i]", 0, ("profile",))
+    profile = _write_loop((shape,), "radius, parameters, profile, n", "radius[i]", 0, ("profile",))
     return CompiledFunction(profile, PROFILE, _is_ours(shape))
 
 
 def _is_ours(shape: Shape) -> bool:
     """Whether compiled code may be kept on disk: nobody knows what a user's depends on."""
-    return store.is_ours(_python(shape.function).__code__.co_filename)
+    return store.is_ours(_find_python(shape.function).__code__.co_filename)
 
 
-def _loop(shapes: tuple[Shape, ...], arguments: str, x: str, first: int, results) -> Callable:
+def _write_loop(shapes: tuple[Shape, ...], arguments: str, x: str, first: int, results) -> Callable:
     """Write the function that adds up formulas over an array, as dataclasses write methods.
 
     Parameters start at index ``first``. ``results`` names the array for each result of a formula,
@@ -231,7 +231,7 @@ def _loop(shapes: tuple[Shape, ...], arguments: str, x: str, first: int, results
     known: dict[str, Any] = {"__name__": __name__}
     lines, calls = [f" at = {first}"], []
     for k, (function, count) in enumerate(shapes):
-        known[f"formula_{k}"] = function if _is_compiled(function) else _formula(function)
+        known[f"formula_{k}"] = function if _is_compiled(function) else _compile_formula(function)
         if count is None:
             names = [f"table_{k}"]
             lines.append(f" table_{k} = parameters[at + 1 : at + 1 + int(parameters[at])]")
@@ -248,14 +248,14 @@ def _loop(shapes: tuple[Shape, ...], arguments: str, x: str, first: int, results
             total = " + ".join(f"y{j}_{k}" for k in range(len(shapes)))
             lines.append(f"  {array}[i] = {total}")
     body = "\n".join(lines)
-    codes = [_python(shape.function).__code__ for shape in shapes]
+    codes = [_find_python(shape.function).__code__ for shape in shapes]
     key = body + "".join(f"{c.co_code!r}{c.co_consts!r}{c.co_names!r}" for c in codes)
     name = f"loop_{sha256(key.encode()).hexdigest()[:16]}"
     exec(compile(f"def {name}({arguments}):\n{body}\n", __file__, "exec"), known)
     return known[name]
 
 
-def _formula(function: Callable) -> Callable:
+def _compile_formula(function: Callable) -> Callable:
     return njit(function, **_OPTIONS)
 
 
@@ -263,5 +263,5 @@ def _is_compiled(function: Callable) -> bool:
     return hasattr(function, "py_func")
 
 
-def _python(function: Callable) -> Any:
+def _find_python(function: Callable) -> Any:
     return getattr(function, "py_func", function)

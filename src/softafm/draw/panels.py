@@ -8,18 +8,18 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from softafm.draw.histories import axis_of, felt, moved, strokes
+from softafm.draw.histories import axis_of, find_force, name_moved, split_strokes
 from softafm.draw.style import (
     APPROACH,
     HOLLOW,
     RETRACT,
-    colours,
-    factor_of,
-    label_of,
-    quantity,
-    run_entries,
-    stroke_entries,
+    choose_colours,
+    choose_factor,
+    make_run_entries,
+    make_stroke_entries,
     tidy,
+    typeset,
+    write_label,
 )
 from softafm.modes import Layout
 from softafm.results.content import unit_of
@@ -58,11 +58,11 @@ def _draw(ax: Axes, runs: list[xr.Dataset], abscissa: str, ordinate: str) -> Non
         along = run[abscissa].dims
         x = scales[0] * run[abscissa].values
         y = scales[1] * run[ordinate].transpose(*along, ...).values
-        approach, retract = colours(index, len(runs))
+        approach, retract = choose_colours(index, len(runs))
         if along != ("time",):
             ax.plot(x, y.reshape(x.size, -1), color=approach, linewidth=1.5)
             continue
-        for stroke, falling in strokes(run[moved(run)].values):
+        for stroke, falling in split_strokes(run[name_moved(run)].values):
             ax.plot(
                 x[stroke],
                 y[stroke],
@@ -101,7 +101,7 @@ def _crop(axes: np.ndarray, runs: list[xr.Dataset], layout: Layout) -> None:
     abscissae = dict.fromkeys(abscissa for abscissa, _ in layout.panels)
     heights = [name for name in abscissae if name.endswith("_height")]
     for ax, (abscissa, _) in zip(axes, layout.panels, strict=True):
-        low, high = felt(runs, *(heights if abscissa in heights else [abscissa]))
+        low, high = find_force(runs, *(heights if abscissa in heights else [abscissa]))
         scale = _scale(runs, abscissa)
         ax.set_xlim(scale * low, scale * high)
         if abscissa == "time":
@@ -112,7 +112,7 @@ def _add_legend(
     figure: Figure, axes: np.ndarray, runs: list[xr.Dataset], names: list[str], layout: Layout
 ) -> None:
     """Tell runs and strokes apart, and say the scalars of the title."""
-    entries, stroke = run_entries(names), _stroke_entries(runs)
+    entries, stroke = make_run_entries(names), _stroke_entries(runs)
     if len(axes) == 1:
         axes[0].legend(handles=entries + stroke, frameon=False)
     elif not layout.title:
@@ -126,15 +126,15 @@ def _add_legend(
             axes[-1].set_title(lines[0], size=10)
             return
         lines = [f"{name}: {line}" for name, line in zip(names, lines, strict=True)]
-        figure.legend(handles=run_entries(lines), loc="outside lower center", frameon=False)
+        figure.legend(handles=make_run_entries(lines), loc="outside lower center", frameon=False)
 
 
 def _stroke_entries(runs: list[xr.Dataset]) -> list[Line2D]:
     """Legend entries of the strokes that there are by line style, and of elastic jumps."""
     if "jump_time" not in runs[0]:
         return []
-    fallen = {falling for run in runs for _, falling in strokes(run[moved(run)].values)}
-    down, up = stroke_entries(len(runs))
+    fallen = {falling for run in runs for _, falling in split_strokes(run[name_moved(run)].values)}
+    down, up = make_stroke_entries(len(runs))
     entries = [entry for entry, falling in ((down, True), (up, False)) if falling in fallen]
     if any(run["jump_time"].size for run in runs):
         entries.append(Line2D([], [], color="black", label="elastic jump", **HOLLOW))
@@ -144,22 +144,22 @@ def _stroke_entries(runs: list[xr.Dataset]) -> list[Line2D]:
 def _summary(run: xr.Dataset, layout: Layout) -> str:
     """Return the scalars of the title in words."""
     return ", ".join(
-        f"{words} {quantity(float(run[name]), str(unit_of(name)))}" for name, words in layout.title
+        f"{words} {typeset(float(run[name]), str(unit_of(name)))}" for name, words in layout.title
     )
 
 
 def _duration(runs: list[xr.Dataset]) -> str:
     duration = max(float(np.ptp(run["time"].values)) for run in runs)
-    return f"Interaction only; the run lasts {quantity(duration, 's')}"
+    return f"Interaction only; the run lasts {typeset(duration, 's')}"
 
 
 def _label(variable: str, scale: float) -> str:
     title, unit = axis_of(variable)
-    return title if unit is None else label_of(title, unit, scale)
+    return title if unit is None else write_label(title, unit, scale)
 
 
 def _scale(runs: list[xr.Dataset], variable: str) -> float:
     """Factor from SI to the prefix that suits the largest value of all runs."""
     if axis_of(variable)[1] is None:
         return 1.0
-    return factor_of(*(run[variable].values for run in runs))
+    return choose_factor(*(run[variable].values for run in runs))

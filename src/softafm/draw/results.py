@@ -7,9 +7,9 @@ from matplotlib.figure import Figure
 
 from softafm.checks.kinds import list_of
 from softafm.checks.refusals import one_of
-from softafm.draw.approach import approach_curve
+from softafm.draw.approach import draw_approach_curve
 from softafm.draw.panels import draw_panels
-from softafm.draw.style import COLOURS, labels_of
+from softafm.draw.style import COLOURS, choose_labels
 from softafm.modes import MODES
 from softafm.results.content import MAPS
 
@@ -43,7 +43,7 @@ def plot(
         labels is not that of datasets.
     """
     runs = list_of("datasets", datasets, xr.Dataset, "a result of softafm, an xarray.Dataset")
-    names = labels_of("dataset", runs, labels, (f"run {i + 1}" for i in range(len(runs))))
+    names = choose_labels("dataset", runs, labels, (f"run {i + 1}" for i in range(len(runs))))
     modes = sorted({str(run.attrs.get("mode")) for run in runs})
     known = [*MODES, *MAPS]
     if len(modes) > 1 or modes[0] not in known:
@@ -51,7 +51,7 @@ def plot(
     if modes[0] in MAPS:
         return _maps(runs, names)
     if "sweep_height" in runs[0].dims:
-        return approach_curve(runs, names)
+        return draw_approach_curve(runs, names)
     return draw_panels(runs, names, MODES[modes[0]].figure)
 
 

@@ -7,8 +7,8 @@ from importlib import resources
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from softafm.checks.paths import why_no_file
-from softafm.checks.refusals import ConfigError, as_written, nearest, one_of, shown, unknown
+from softafm.checks.paths import explain_no_file
+from softafm.checks.refusals import ConfigError, nearest, one_of, refuse_unknown, reword, shown
 from softafm.contact import Contact
 from softafm.experiment import schema
 from softafm.experiment.takers import refuse_result, refuse_unless
@@ -114,7 +114,7 @@ class Experiment:
             yield
         except ValueError as error:
             for table in ("motion", "run"):
-                line = as_written(table, self.document.get(table, {}), error)
+                line = reword(table, self.document.get(table, {}), error)
                 if line is not None:
                     raise ConfigError([line]) from error
             raise
@@ -167,7 +167,7 @@ def load_document(path: str | Path) -> dict[str, Any]:
     try:
         refuse_result(path)
         if not path.is_file():
-            raise ConfigError([f"{name}: {why_no_file(path)}"])
+            raise ConfigError([f"{name}: {explain_no_file(path)}"])
         size = path.stat().st_size
         if size > LARGEST_FILE:
             raise ConfigError(
@@ -256,7 +256,7 @@ def experiment_from(
     mode = MODES.get(name) if isinstance(name, str) else None
     further = () if mode is None else tuple(mode.tables)
     known = ["mode", *_TABLES, "cantilever", *further, *_OPTIONAL_TABLES]
-    problems += [unknown(key, known, key) for key in document if key not in known]
+    problems += [refuse_unknown(key, known, key) for key in document if key not in known]
     if name is None:
         problems.append(f"mode: missing; must be {one_of(list(MODES))}")
     elif mode is None:
@@ -357,7 +357,7 @@ def _refuse_motion(contact: Contact, motion: Any, solver: Any, written: dict) ->
     try:
         refuse_unable(solver, motion)
     except ValueError as error:
-        raise ConfigError([as_written("motion", written, error) or str(error)]) from None
+        raise ConfigError([reword("motion", written, error) or str(error)]) from None
 
 
 def build_table(name: str, document: Mapping[str, Any], mode: Mode | None, folder: Path) -> Any:

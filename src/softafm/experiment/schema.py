@@ -25,13 +25,13 @@ from pydantic import (
 from softafm.checks.refusals import (
     ConfigError,
     all_of,
-    as_written,
+    describe_problems,
     nearest,
     one_of,
-    problems,
+    reword,
     shown,
 )
-from softafm.checks.suggestions import limit
+from softafm.checks.suggestions import explain_limit
 from softafm.experiment.entries import (
     Angle,
     Compliances,
@@ -105,7 +105,7 @@ from softafm.surfaces import (
     VanDerWaalsAttraction,
     read_law,
 )
-from softafm.surfaces.limits import length
+from softafm.surfaces.limits import check_length
 from softafm.tips import (
     Cone,
     FlatPunch,
@@ -413,7 +413,7 @@ KEYS: dict[str, Any] = {
     ),
     **dict.fromkeys(
         ("decay", "core", "debye_length", "cutoff"),
-        Annotated[Length, refused_as(lambda number: length("", number))],
+        Annotated[Length, refused_as(lambda number: check_length("", number))],
     ),
     "height": Length,
     **dict.fromkeys(("E", "E0", "E1", "G", "G0"), Annotated[Modulus, Positive]),
@@ -602,7 +602,7 @@ def chosen(
     if not isinstance(choice, str) or choice not in choices:
         reason = nearest(choice, list(choices))
         if chooser == "law" and isinstance(choice, str):
-            reason = limit(choice) + reason
+            reason = explain_limit(choice) + reason
         raise ConfigError([f"{name}.{chooser} = {shown(choice)}: {reason}"])
     return built(name, written, choices[choice], chooser=chooser, folder=folder)
 
@@ -616,7 +616,9 @@ def built(
         return table.model_validate(keys, context={"folder": folder}).build()
     except ValidationError as invalid:
         valid = [*table.model_fields, *([chooser] if chooser else [])]
-        lines = [problems(name, table, e, valid) for e in invalid.errors(include_url=False)]
+        lines = [
+            describe_problems(name, table, e, valid) for e in invalid.errors(include_url=False)
+        ]
         raise ConfigError([line for several in lines for line in several]) from None
     except (ValueError, ArithmeticError) as error:
-        raise ConfigError([as_written(name, written, error) or f"{name}: {error}"]) from error
+        raise ConfigError([reword(name, written, error) or f"{name}: {error}"]) from error

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from softafm.checks.refusals import ConfigError, as_written, nearest, one_of, shown, unknown
+from softafm.checks.refusals import ConfigError, nearest, one_of, refuse_unknown, reword, shown
 from softafm.experiment.config import build_table, load_document, set_value
 from softafm.experiment.entries import Frequency, Length, Ratio, Tabor, Tolerance, choice_of
 from softafm.experiment.schema import Table, built, chosen
@@ -69,7 +69,7 @@ class MapExperiment:
                 workers=workers, progress=progress,
             )  # fmt: skip
         except ValueError as error:
-            raise ConfigError([_reworded(self.document, error)]) from error
+            raise ConfigError([_reword(self.document, error)]) from error
         if "material" in result:
             result["material"].attrs |= {
                 "flag_values": [float(i) for i in range(len(self.materials))],
@@ -91,10 +91,10 @@ def load_map(path: str | Path, overrides: Sequence[str] = ()) -> MapExperiment:
     document = load_document(path)
     for override in overrides:
         set_value(document, override)
-    return map_from(document, path.parent)
+    return build_map(document, path.parent)
 
 
-def map_from(document: Mapping[str, Any], folder: Path) -> MapExperiment:
+def build_map(document: Mapping[str, Any], folder: Path) -> MapExperiment:
     """Build the map that a file's tables describe; images are sought in ``folder``.
 
     Raises
@@ -110,7 +110,7 @@ def map_from(document: Mapping[str, Any], folder: Path) -> MapExperiment:
     if mode not in MAP_MODES:
         raise ConfigError([f"mode = {shown(mode)}: {nearest(mode, MAP_MODES)}"])
     known = ["mode", "tip", "cantilever", "motion", "map", "run"]
-    problems = [unknown(key, known, key) for key in document if key not in known]
+    problems = [refuse_unknown(key, known, key) for key in document if key not in known]
 
     def read(name: str, build: Callable[[dict], Any]) -> Any:
         try:
@@ -149,14 +149,14 @@ def map_from(document: Mapping[str, Any], folder: Path) -> MapExperiment:
         else:
             imaging = ForceVolume(motion, lever)
     except ValueError as error:
-        raise ConfigError([as_written("motion", document["motion"], error) or str(error)]) from None
+        raise ConfigError([reword("motion", document["motion"], error) or str(error)]) from None
     try:
         sample = table.sample_map(tip)
         _ = sample.pixels
     except ConfigError:
         raise
     except ValueError as error:
-        raise ConfigError([as_written("map", document["map"], error) or f"map: {error}"]) from error
+        raise ConfigError([reword("map", document["map"], error) or f"map: {error}"]) from error
     names = tuple(each.name or str(i) for i, each in enumerate(table.materials))
     return MapExperiment(sample, imaging, names, run.tolerance, run.regularise, document)
 
@@ -173,7 +173,7 @@ def _refuse_flow(mode: str, materials: Sequence[Any]) -> None:
             )
 
 
-def _reworded(document: Mapping[str, Any], error: ValueError) -> str:
+def _reword(document: Mapping[str, Any], error: ValueError) -> str:
     """Word what a scan refuses by what the user wrote."""
     written = document["motion"]
     match = re.fullmatch(r"(pixel \(\d+, \d+\)): start height = \S+ m: (.*)", str(error))

@@ -27,7 +27,7 @@ from softafm.modes.tap_map import OBSERVABLES, TapMap
 from softafm.modes.tapping import observe_taps
 from softafm.progress import Progress, reporting
 from softafm.results.content import DIRECTIONS, observables
-from softafm.units.quantities import readable
+from softafm.units.quantities import write_quantity
 
 if TYPE_CHECKING:
     from xarray import Dataset
@@ -193,7 +193,7 @@ def doubt_sine(drive: Drive, amplitude, virial, dissipation) -> AccuracyWarning 
     worst = int(shares.argmax())
     if shares[worst] <= _SINE:
         return None
-    off = readable(float(shares[worst] * np.atleast_1d(amplitude)[worst]), "m")
+    off = write_quantity(float(shares[worst] * np.atleast_1d(amplitude)[worst]), "m")
     text = (
         f"the lever does not move as the sine that is assumed: its second harmonic is {off}, "
         f"{shares[worst]:.2g} of the amplitude, at quality_factor = {drive.quality_factor:g} and "
@@ -206,8 +206,8 @@ def doubt_sine(drive: Drive, amplitude, virial, dissipation) -> AccuracyWarning 
 
 def _where(tap: tuple[float, float]) -> str:
     amplitude, approach = tap
-    height = readable(amplitude + approach, "m")
-    return f"amplitude {readable(amplitude, 'm')} and mean height {height}"
+    height = write_quantity(amplitude + approach, "m")
+    return f"amplitude {write_quantity(amplitude, 'm')} and mean height {height}"
 
 
 def _solutions_to_check(found: Solutions) -> np.ndarray:
@@ -304,11 +304,11 @@ def _foresee(inputs: Inputs) -> Foreseen:
     drive, frequency = drive_of(inputs.cantilever, sweep.free_amplitude, sweep.drive_frequency)
     amplitudes = sweep.free_amplitude * np.array(sweep.amplitude_ratio)
     words = f"driven at {drive.detuning:.4g} of the resonance, Q = {drive.quality_factor:.4g}"
-    most = readable(drive.most_dissipation, "J")
+    most = write_quantity(drive.most_dissipation, "J")
     rows = (
-        Row("lever stiffness", readable(drive.stiffness, "N/m"), ""),
-        Row("free amplitude", readable(drive.free_amplitude, "m"), words),
-        Row("force of the drive", readable(drive.force, "N"), "amplitude, on the tip"),
+        Row("lever stiffness", write_quantity(drive.stiffness, "N/m"), ""),
+        Row("free amplitude", write_quantity(drive.free_amplitude, "m"), words),
+        Row("force of the drive", write_quantity(drive.force, "N"), "amplitude, on the tip"),
         Row("largest dissipation", most, "that the drive can feed, a cycle"),
     )
     deepest = deepest_tap(contact, drive, frequency, amplitudes)

@@ -64,7 +64,7 @@ def refuse_unusable(attributes: Mapping[str, Any], variables: Variables) -> None
 
 
 def _refuse_experiment(mode: str, needed: Needed, attributes: Mapping[str, Any]) -> None:
-    experiment = _table("experiment", attributes)
+    experiment = _parse_table("experiment", attributes)
     if experiment.get("mode") != mode:
         raise ValueError(
             f"attribute experiment: is one of mode {shown(experiment.get('mode'))}, but the result "
@@ -91,21 +91,23 @@ def _refuse_attributes(needed: Needed, attributes: Mapping[str, Any]) -> None:
     for name in _TEXTS:
         if not isinstance(attributes.get(name, ""), str):
             raise ValueError(f"attribute {name} = {shown(attributes[name])}: must be text")
-    differences = _table("check_differences", attributes, "{}")
+    differences = _parse_table("check_differences", attributes, "{}")
     if not all(map(_is_number, differences.values())):
         raise ValueError("attribute check_differences: must hold numbers by name")
-    if not isinstance(_parsed("failures", attributes, "[]"), list):
+    if not isinstance(_parse("failures", attributes, "[]"), list):
         raise ValueError("attribute failures: must be a list, as JSON")
 
 
-def _table(name: str, attributes: Mapping[str, Any], default: str | None = None) -> dict[str, Any]:
-    found = _parsed(name, attributes, default)
+def _parse_table(
+    name: str, attributes: Mapping[str, Any], default: str | None = None
+) -> dict[str, Any]:
+    found = _parse(name, attributes, default)
     if not isinstance(found, dict):
         raise ValueError(f"attribute {name}: must be a table, as JSON")
     return found
 
 
-def _parsed(name: str, attributes: Mapping[str, Any], default: str | None) -> Any:
+def _parse(name: str, attributes: Mapping[str, Any], default: str | None) -> Any:
     text = attributes.get(name, default)
     if text is None:
         raise ValueError(f"attribute {name}: missing")
