@@ -51,6 +51,16 @@ PROFILE = void(_ARRAY, _ARRAY, _ARRAY, int64)
 HEIGHT = float64(float64, _ARRAY)
 """``(time, parameters) -> height``: tip height above the undeformed surface, in m."""
 
+RESPONSE = types.UniTuple(float64, 2)(float64, float64, float64, float64, _ARRAY, _ARRAY)
+"""``(time, step, deflection, force, parameters, state) -> (rest, stiffness)`` of a lever over the
+step, s, that ends at ``time`` and begins with this deflection, m, and force, N; in m and N/m.
+
+A lever of infinite stiffness keeps its deflection."""
+
+ACCEPTANCE = void(float64, float64, float64, float64, _ARRAY, _ARRAY)
+"""``(time, step, before, force, parameters, state)``: let the lever remember, in ``state``, that
+the force on it went from one to the other, N, in the step that ended at ``time``."""
+
 
 def compile_for(signature: Any, **options: Any) -> Callable[[Callable], Any]:
     """Decorate a function, to be compiled for ``signature`` here and now, or taken from the store.
@@ -202,8 +212,16 @@ def pointer(signature: Any) -> Pointer:
 
 
 def compiled(signature: Any) -> Callable[[Callable], CompiledFunction]:
-    """Decorate a function, to be compiled for ``signature`` when it is first used."""
-    return lambda function: CompiledFunction(function, signature)
+    """Decorate a function, to be compiled for ``signature`` when it is first used.
+
+    One of this package is kept on disk; a user's is compiled anew in every process.
+    """
+
+    def compile_later(function: Callable) -> CompiledFunction:
+        on_disk = store.is_ours(function.__code__.co_filename)
+        return CompiledFunction(function, signature, on_disk)
+
+    return compile_later
 
 
 @cache

@@ -230,6 +230,15 @@ def tip_force(pressure, gap, rise, mesh, frame, law, parameters, far_work):
     return 2.0 * pi * frame * frame * total
 
 
+@compile_for(float64(float64, float64), fastmath=False)
+def spring_constant(stiffness, frame):
+    """Stiffness of a lever, N/m, in units of Π/q² of a frame; 0 if it holds the tip still.
+
+    Rounded as it stands, whatever code it is compiled into.
+    """
+    return stiffness / (2.0 * pi * frame * frame) if stiffness < inf else 0.0
+
+
 @compile_for((pointer(PROFILE), VECTOR, MESH, float64, VECTOR, VECTOR, VECTOR))
 def raise_tip(profile, parameters, mesh, frame, scratch, tip, rise):
     """Heights of the tip above its apex at the nodes, and above the last node beyond the mesh."""
