@@ -217,6 +217,21 @@ def propose(
 
 
 @inlined
+def solve(trial, law, parameters, mesh, controls, clock, work):
+    """Bring surface and lever into equilibrium, with the load; whether a stable shape was near."""
+    iterations = equilibrate(
+        work.u, work.v, trial.frame * trial.compliance, work.standoff, trial.lever, trial.rest,
+        work.rise, mesh, law, parameters.law, CLOSEST * controls.edge_gap, controls.newton,
+        clock, work.hessian, work.newton, work.far,
+    )  # fmt: skip
+    clock.newtons += abs(iterations)
+    if iterations > 0:
+        for i in range(mesh.nodes.size):
+            work.load_new[i] = (work.v[i] - work.u[i]) / trial.compliance
+    return iterations > 0
+
+
+@inlined
 def judge(trial, force, parameters, mesh, controls, clock, work):
     """Error of a solved step, in units of the one aimed at."""
     n, modes = mesh.nodes.size, parameters.retardation.size
@@ -322,7 +337,6 @@ def advance(
     """
     n = mesh.nodes.size
     work = furnish(room)
-    gap, pressure = work.newton[0, :n], work.newton[1, :n]
     shortest = controls.shortest_step
     count = 0
     while count < records.size:
@@ -337,22 +351,16 @@ def advance(
             step, height, profile, respond, parameters, background, mesh, controls, fields, clock,
             lever_state, work,
         )  # fmt: skip
-        iterations = equilibrate(
-            work.u, work.v, trial.frame * trial.compliance, work.standoff, trial.lever, trial.rest,
-            work.rise, mesh, law, parameters.law, CLOSEST * controls.edge_gap, controls.newton,
-            clock, work.hessian, work.newton, work.far,
-        )  # fmt: skip
-        clock.newtons += abs(iterations)
-        if iterations < 0:
+        stable = solve(trial, law, parameters, mesh, controls, clock, work)
+        if not stable:
             if step <= shortest:
                 return FALL, count
             clock.step = max(RETRIED * step, 0.999 * shortest)
             continue
-        for i in range(n):
-            work.load_new[i] = (work.v[i] - work.u[i]) / trial.compliance
         force = tip_force(
-            pressure, gap, work.rise, mesh, trial.frame, law, parameters.law, work.far
-        )
+            work.newton[1, :n], work.newton[0, :n], work.rise, mesh, trial.frame, law,
+            parameters.law, work.far,
+        )  # fmt: skip
         error = judge(trial, force, parameters, mesh, controls, clock, work)
         growth = SAFETY * max(error, 1e-6) ** (-1.0 / trial.history)
         if error > REFUSED and step > shortest:
