@@ -12,11 +12,12 @@ from hashlib import sha256
 from typing import Any
 
 from numba import config, float64, int64, njit, types, void
+from numba.core import cgutils
 from numba.core.caching import _Cache
 from numba.core.compiler import CompileResult
 from numba.core.serialize import dumps
-from numba.experimental.function_type import _get_wrapper_address
-from numba.extending import typeof_impl
+from numba.experimental.function_type import FunctionModel, _get_wrapper_address
+from numba.extending import NativeValue, register_model, typeof_impl, unbox
 
 from softafm.compiled import store
 from softafm.compiled.formulas import Shape
@@ -49,6 +50,16 @@ PROFILE = void(_ARRAY, _ARRAY, _ARRAY, int64)
 
 HEIGHT = float64(float64, _ARRAY)
 """``(time, parameters) -> height``: tip height above the undeformed surface, in m."""
+
+RESPONSE = types.UniTuple(float64, 2)(float64, float64, float64, float64, _ARRAY, _ARRAY)
+"""``(time, step, deflection, force, parameters, state) -> (rest, stiffness)`` of a lever over the
+step, s, that ends at ``time`` and begins with this deflection, m, and force, N; in m and N/m.
+
+A lever of infinite stiffness keeps its deflection."""
+
+ACCEPTANCE = void(float64, float64, float64, float64, _ARRAY, _ARRAY)
+"""``(time, step, before, force, parameters, state)``: let the lever remember, in ``state``, that
+the force on it went from one to the other, N, in the step that ended at ``time``."""
 
 
 def compile_for(signature: Any, **options: Any) -> Callable[[Callable], Any]:
@@ -134,6 +145,25 @@ class _Store(_Cache):
         """Do nothing: code of another build is never found."""
 
 
+class Pointer(types.FunctionType):
+    """The type by which kernels know a ``CompiledFunction``: numba's, but quick to hand over."""
+
+
+register_model(Pointer)(FunctionModel)
+
+
+@unbox(Pointer)
+def _hand_over(typ, function, c):
+    """Read the address that the function keeps: numba looks for it for 7 µs at every call."""
+    address = c.pyapi.object_getattr_string(function, "address")
+    with c.builder.if_then(cgutils.is_null(c.builder, address), likely=False):
+        c.builder.ret(c.pyapi.get_null_object())
+    handed = cgutils.create_struct_proxy(typ)(c.context, c.builder)
+    handed[0] = c.pyapi.long_as_voidptr(address)  # the others are not called by
+    c.pyapi.decref(address)
+    return NativeValue(handed._getvalue())
+
+
 class CompiledFunction(types.WrapperAddressProtocol):
     """A function compiled for one signature, to be called from Python or handed to a kernel.
 
@@ -151,23 +181,24 @@ class CompiledFunction(types.WrapperAddressProtocol):
         return compile_it(self._signature)(self._python)
 
     @cached_property
-    def _address(self) -> int:
+    def address(self) -> int:
+        """Where its machine code starts."""
         return _get_wrapper_address(self._compiled, self._signature)
 
     def __call__(self, *arguments):
         return self._compiled(*arguments)
 
     def __wrapper_address__(self) -> int:
-        return self._address
+        return self.address
 
     def signature(self):
         """The numba signature it is compiled for."""
         return self._signature
 
     @cached_property
-    def numba_type(self) -> types.FunctionType:
+    def numba_type(self) -> Pointer:
         """The type that kernels know it by."""
-        return types.FunctionType(self._signature)
+        return Pointer(self._signature)
 
 
 @typeof_impl.register(CompiledFunction)
@@ -175,9 +206,9 @@ def _find_type(function, context):
     return function.numba_type
 
 
-def pointer(signature: Any) -> types.FunctionType:
+def pointer(signature: Any) -> Pointer:
     """Return the type of a first-class compiled function with this signature."""
-    return types.FunctionType(signature)
+    return Pointer(signature)
 
 
 def compiled(signature: Any) -> Callable[[Callable], CompiledFunction]:
