@@ -17,7 +17,7 @@ from softafm.app.take_away import netcdf_bytes
 from softafm.app.worker import refuse_large
 from softafm.draw.summary import observables
 from softafm.experiment.config import experiment_from
-from softafm.experiment.regime import Row
+from softafm.experiment.scales import Row
 
 TAP = presets()["ldpe-tapping"]
 

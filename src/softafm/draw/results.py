@@ -7,10 +7,13 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
+from numpy.typing import ArrayLike
 
 from softafm.checks.kinds import list_of
 from softafm.draw.approach import approach_curve
 from softafm.draw.histories import AXES, felt, moved, strokes
+from softafm.draw.reference import NAME as REFERENCE
+from softafm.draw.reference import draw_curve
 from softafm.draw.style import (
     APPROACH,
     COLOURS,
@@ -30,7 +33,9 @@ __all__ = ["COLOURS", "plot"]
 
 
 def plot(
-    datasets: xr.Dataset | Sequence[xr.Dataset], labels: Sequence[str] | None = None
+    datasets: xr.Dataset | Sequence[xr.Dataset],
+    labels: Sequence[str] | None = None,
+    reference: xr.Dataset | tuple[ArrayLike, ArrayLike] | None = None,
 ) -> Figure:
     """Draw one result, or several of the same mode over each other.
 
@@ -40,6 +45,11 @@ def plot(
         What a mode returned, or a sequence of such.
     labels
         A name for each dataset, shown in the legend; "run 1", "run 2", ... by default.
+    reference
+        What to compare them with: one more result of the same mode, or a closed form of force
+        against tip height, as a pair of heights (m) and forces (N), such as
+        ``(-indentation.depth(tip, a), indentation.load(tip, a, modulus))``. It is drawn as a dotted
+        line, within the range of the results.
 
     Returns
     -------
@@ -52,11 +62,21 @@ def plot(
     Raises
     ------
     ValueError
-        If there is nothing to draw, if the modes differ or have no figure, or if the number of
-        labels is not that of datasets.
+        If there is nothing to draw, if the modes differ or have no figure, if the number of
+        labels is not that of datasets, or if the figure cannot show the reference.
     """
     runs = list_of("datasets", datasets, xr.Dataset, "a result of softafm, an xarray.Dataset")
     names = labels_of("dataset", runs, labels, (f"run {i + 1}" for i in range(len(runs))))
+    if isinstance(reference, xr.Dataset):
+        return _plot([*runs, reference], [*names, REFERENCE])
+    figure = _plot(runs, names)
+    if reference is not None:
+        draw_curve(figure, str(runs[0].attrs["mode"]), runs, reference)
+    return figure
+
+
+def _plot(runs: list[xr.Dataset], names: list[str]) -> Figure:
+    """Draw results of one mode, each with its name."""
     modes = sorted({str(run.attrs.get("mode")) for run in runs})
     figures = {
         "force-distance": _force_distance,

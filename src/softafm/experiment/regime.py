@@ -1,12 +1,14 @@
-"""What an experiment is before it runs, and what it will cost: numbers, and a table for people."""
+"""What an experiment is before it runs, and what it will cost."""
 
+from collections.abc import Sequence
 from math import isfinite, log10
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
-from rich.table import Table
 
-from softafm.draw.summary import misfit_in_words, regularised_in_words, slowed_in_words, table_of
+from softafm.draw.summary import misfit_in_words, regularised_in_words, slowed_in_words
+from softafm.experiment.run import Source, experiment_of
+from softafm.experiment.scales import Regime, Row
 from softafm.instrument.motions import lowest_height
 from softafm.modes.approach import deepest_tap, drive_of
 from softafm.modes.start import regularised
@@ -33,14 +35,6 @@ _FEW = 4
 """Creep times up to which each has a row of its own."""
 
 
-class Row(NamedTuple):
-    """A number with its unit, as text, and what it means."""
-
-    name: str
-    value: str
-    words: str
-
-
 class _Case(NamedTuple):
     """What comes in touch, and how: of an approach curve its deepest tap."""
 
@@ -49,12 +43,37 @@ class _Case(NamedTuple):
     drive: "Drive | None"
 
 
-def regime(experiment: "Experiment") -> Table:
-    """Return a table of the numbers that say how a contact will behave and what it will cost."""
-    table = table_of(f"{experiment.mode}, before any run")
-    for row in rows(experiment):
-        table.add_row(*row)
-    return table
+def regime(experiment: Source, overrides: Sequence[str] = ()) -> Regime:
+    """Return the numbers that say how a contact will behave and what a run of it will cost.
+
+    Parameters
+    ----------
+    experiment, overrides
+        As ``softafm.run`` takes them. Nothing is run.
+
+    Returns
+    -------
+    Regime
+        Tabor numbers, cohesive lengths, depth and cost by name; ``print`` shows them as a table
+        with what each means, as ``softafm info`` does.
+
+    Raises
+    ------
+    ConfigError
+        As ``softafm.run``.
+    """
+    known = experiment_of(experiment, overrides)
+    case = _case(known)
+    lowest = lowest_height(case.motion)
+    return Regime(
+        mode=known.mode,
+        contact=case.contact,
+        lowest_height=lowest,
+        contact_radius=case.contact.contact_radius(lowest),
+        duration=float(case.motion.breaks[-1] - case.motion.breaks[0]),
+        expected_seconds=_seconds(known, case),
+        rows=tuple(rows(known)),
+    )
 
 
 def rows(experiment: "Experiment") -> list[Row]:
