@@ -34,7 +34,7 @@ class SampleMap:
 
     Every pixel is a flat half-space of its own with the properties of that pixel: nothing couples
     neighbours, and slopes of the topography do not count. So features should be wider than the
-    contact.
+    contact. Rows of arrays run along y, downwards as in an image.
 
     Parameters
     ----------
@@ -50,8 +50,6 @@ class SampleMap:
         Number of the material of every pixel, (ny, nx); needed with several materials.
     height
         Height of the surface, m, (ny, nx); 0 by default. It shifts the topography and no more.
-
-    Rows run along y, downwards as in an image.
 
     Raises
     ------
