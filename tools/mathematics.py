@@ -13,6 +13,7 @@ from mkdocs.config.defaults import MkDocsConfig
 from mkdocs.exceptions import PluginError
 
 _INLINE = r"(?<![\\$\w])\$(?=[^\s$])([^$\n]*[^\s$])\$(?![\w$])"
+_PARTS = {"mfrac": 2, "msub": 2, "msup": 2, "msubsup": 3, "munder": 2, "munderover": 3}
 _BEFORE_ESCAPES = 185
 """Priority between those of code, which may hold dollar signs, and of backslashes."""
 
@@ -31,9 +32,14 @@ def mathml(latex: str, display: str) -> str:
         found = convert(latex, display=display)
     except Exception as error:  # of a dozen classes that have nothing in common
         raise PluginError(f"formula {latex!r}: {type(error).__name__} {error}") from error
-    unknown = re.search(r"\\[A-Za-z]*", "".join(ElementTree.fromstring(found).itertext()))
+    tree = ElementTree.fromstring(found)
+    # The converter sets what it does not know as text, and lets parts of a fraction be missing.
+    unknown = re.search(r"\\[A-Za-z]*", "".join(tree.itertext()))
     if unknown:
         raise PluginError(f"formula {latex!r}: {unknown[0]} is not known")
+    for each in tree.iter():
+        if len(each) != _PARTS.get(each.tag.rpartition("}")[2], len(each)):
+            raise PluginError(f"formula {latex!r}: a part of a fraction or an index is missing")
     return found
 
 

@@ -155,8 +155,8 @@ class Contact:
         """Return the contact with a law of longer range, at the same work of adhesion.
 
         All lengths of the law grow until the Tabor number of the softened sample is ``tabor``.
-        Where it is that or below already, the contact is returned as it is. ``docs/soft.md`` tells
-        what changes and what does not.
+        Where it is that or below already, the contact is returned as it is. ``softafm docs soft``
+        tells what changes and what does not.
 
         Raises
         ------

@@ -19,7 +19,7 @@ class Energy:
     offset is the memory, by Newton's method; the memory is integrated exactly for a pressure
     quadratic in time. Steps adapt to the tolerance. Where no stable shape is near, the surface
     falls to the next one and the jump is recorded. The mesh rides with the contact edge and its
-    spacing there follows the width of the cohesive zone. ``docs/solver.md`` tells the whole.
+    spacing there follows the width of the cohesive zone. ``softafm docs solver`` has more.
 
     Parameters
     ----------

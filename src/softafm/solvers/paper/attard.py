@@ -21,10 +21,10 @@ class Attard:
 
         (I − J_g K P') u̇ = −R − ḣ0 J_g K p',
 
-    where R is the creep (``docs/paper.md``). ``method="iterative"`` (setup A, Attard 2001) adjusts
-    a guess, at first the rate of the step before, until both sides agree; ``"explicit"`` (B,
-    Rajabifar et al. 2021, equation 14) solves the linear system. The mode's ``tolerance`` has no
-    influence: nodes and steps decide.
+    where R is the creep (``softafm docs paper``). ``method="iterative"`` (setup A, Attard 2001)
+    adjusts a guess, at first the rate of the step before, until both sides agree; ``"explicit"``
+    (B, Rajabifar et al. 2021, equation 14) solves the linear system. The mode's ``tolerance`` has
+    no influence: nodes and steps decide.
 
     Parameters
     ----------
