@@ -41,3 +41,17 @@ def test_docstrings_name_pages_that_are_installed():
     project = tomllib.loads((DOCS.parent / "pyproject.toml").read_text(encoding="utf-8"))
     included = project["tool"]["hatch"]["build"]["targets"]["wheel"]["force-include"]
     assert included == {"docs": documents._INSTALLED.relative_to(package.parent).as_posix()}
+
+
+def test_version_changelog_and_citation_agree():
+    texts = {
+        name: (DOCS.parent / name).read_text(encoding="utf-8")
+        for name in ("CHANGELOG.md", "CITATION.cff")
+    }
+    releases = re.findall(
+        r"^## \[(\d+\.\d+\.\d+)\] - (\d{4}-\d\d-\d\d)$", texts["CHANGELOG.md"], re.M
+    )
+    cited = re.findall(r"^(?:version|date-released): (.*)$", texts["CITATION.cff"], re.M)
+    assert list(releases[0]) == [sa.__version__, cited[1]]
+    assert cited[0] == sa.__version__
+    assert releases == sorted(releases, reverse=True)

@@ -1,6 +1,6 @@
 """Atomic force microscopy on soft, adhesive, viscoelastic surfaces from first principles."""
 
-__version__ = "0.1.0"
+__version__ = "0.2.0"
 
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
