@@ -1,8 +1,10 @@
 """What a user finds in ``softafm``: its names, and how files become results and figures."""
 
+import inspect
 import subprocess
 import sys
 import tomllib
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -30,6 +32,7 @@ turn = "-100 nm"
 speed = "1 um/s"
 """
 SMALL = ["map.pixels=[2, 1]", 'map.size=["20 nm", "10 nm"]']
+_UNSTATED = ("self", "cls")
 HEAVY = {"matplotlib", "numba", "pandas", "pint", "pydantic", "rich", "scipy", "xarray"}
 
 
@@ -232,3 +235,54 @@ def test_a_figure_without_tip_heights_takes_no_closed_form(tmp_path):
     image = sa.load_map(path, SMALL).run()
     with pytest.raises(ValueError, match="mode = amplitude-modulation has no axis of tip height"):
         sa.plot(image, reference=([0, 1e-9], [0, 1e-9]))
+
+
+# Types
+
+
+def public_functions():
+    """Yield every public function, and every method that a public class adds, with its name."""
+    for name in sa.__all__:
+        thing = getattr(sa, name)
+        if inspect.ismodule(thing):
+            found = {f"{name}.{each}": getattr(thing, each) for each in dir(thing)}
+            things = {n: t for n, t in found.items() if "._" not in n and _of_softafm(t)}
+        else:
+            things = {name: thing}
+        for label, each in things.items():
+            if inspect.isroutine(each):
+                yield label, each
+            elif inspect.isclass(each):
+                yield from _methods(label, each)
+
+
+def _of_softafm(thing):
+    return getattr(thing, "__module__", "").startswith("softafm")
+
+
+def _methods(label, kind):
+    for base in kind.__mro__:
+        if not _of_softafm(base):
+            continue
+        for name, member in vars(base).items():
+            function = getattr(member, "fget", None) or getattr(member, "func", member)
+            function = getattr(function, "__func__", function)
+            if inspect.isfunction(function) and not name.startswith("_"):
+                yield f"{label}.{name}", function
+
+
+def test_every_public_function_states_its_types():
+    lacking = []
+    for label, function in public_functions():
+        signature = inspect.signature(function)
+        parameters = [each for each in signature.parameters.values() if each.name not in _UNSTATED]
+        if any(each.annotation is inspect.Parameter.empty for each in parameters):
+            lacking.append(label)
+        elif signature.return_annotation is inspect.Signature.empty:
+            lacking.append(f"{label} ->")
+    assert lacking == []
+    assert len(dict(public_functions())) > 150
+
+
+def test_the_package_says_that_it_is_typed():
+    assert (Path(sa.__file__).parent / "py.typed").is_file()

@@ -67,7 +67,7 @@ def as_written(table: str, written: Mapping[str, Any], error: Exception) -> str 
     if index is not None and isinstance(value, list):
         name, value = f"{name}[{index}]", value[int(index)]
 
-    def other(mention: re.Match) -> str:
+    def other(mention: re.Match[str]) -> str:
         key = _key(mention[1], written)
         return f"{table}.{key} = {shown(written[key])}" if key in written else mention[0]
 

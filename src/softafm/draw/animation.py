@@ -41,7 +41,7 @@ Shown = Callable[[int], None]
 
 def animate(
     result: "Dataset",
-    path,
+    path: str | Path,
     *,
     frames: int = 150,
     seconds: float = 6.0,

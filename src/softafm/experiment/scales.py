@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from rich.console import Console
 from rich.table import Table
@@ -87,7 +87,7 @@ class Regime:
             console.print(self.__rich__())
         return "\n".join(line.rstrip() for line in capture.get().rstrip().splitlines())
 
-    def _repr_pretty_(self, printer, cycle: bool) -> None:
+    def _repr_pretty_(self, printer: Any, cycle: bool) -> None:
         """Show the table where IPython and Jupyter would show the fields."""
         printer.text(str(self))
 

@@ -6,9 +6,10 @@ Rajabifar et al. 2021, equations (29) to (32), and their general form off resona
 import warnings
 from collections.abc import Iterator
 from functools import partial
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from softafm.checks.gathering import Placed, collect_warnings, gather
 from softafm.checks.validate import finite, positive, refuse_masked, tolerance_of
@@ -43,10 +44,10 @@ def approach_curve(
     contact: Contact,
     cantilever: Cantilever,
     free_amplitude: float,
-    amplitude_ratio,
+    amplitude_ratio: ArrayLike,
     *,
     drive_frequency: float | None = None,
-    solver=None,
+    solver: Any = None,
     tolerance: float = 1e-2,
     progress: bool | Progress | None = None,
     check: bool = False,

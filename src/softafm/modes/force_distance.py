@@ -1,7 +1,7 @@
 """Force-distance curves: the tip height is prescribed."""
 
 from functools import partial
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -20,7 +20,7 @@ def force_distance(
     contact: Contact,
     motion: Triangle | Sine | Trajectory,
     *,
-    solver=None,
+    solver: Any = None,
     tolerance: float = 1e-2,
     profiles: bool = False,
     progress: bool | Progress | None = None,

@@ -1,7 +1,7 @@
 """Force spectroscopy: the base of a cantilever is moved, and the lever bends."""
 
 from functools import partial
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from softafm.contact import Contact
 from softafm.instrument.cantilever import Cantilever
@@ -21,7 +21,7 @@ def force_spectroscopy(
     cantilever: Cantilever,
     motion: Triangle | Sine | Trajectory,
     *,
-    solver=None,
+    solver: Any = None,
     tolerance: float = 1e-2,
     profiles: bool = False,
     progress: bool | Progress | None = None,

@@ -3,11 +3,12 @@
 import warnings
 from dataclasses import dataclass
 from time import perf_counter
-from typing import ClassVar
+from typing import Any, ClassVar
 
 from softafm.checks.validate import finite, positive
 from softafm.compiled.announce import announced_compilation
 from softafm.instrument.motions import lowest_height
+from softafm.progress import Progress
 from softafm.solvers.history import History
 
 
@@ -40,7 +41,7 @@ class Energy:
     finest_spacing: float = 5e-6
     most_steps: int = 2_000_000
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         spacing = positive("finest_spacing", self.finest_spacing, "contact radii")
         if spacing > 0.3:
             raise ValueError(f"finest_spacing = {spacing:g} contact radii: must be at most 0.3")
@@ -48,7 +49,14 @@ class Energy:
             raise ValueError(f"most_steps = {self.most_steps!r} steps: must be at least 1")
 
     def solve(
-        self, contact, motion, *, stiffness=None, tolerance=1e-2, profiles=False, progress=None
+        self,
+        contact: Any,
+        motion: Any,
+        *,
+        stiffness: float | None = None,
+        tolerance: float = 1e-2,
+        profiles: bool = False,
+        progress: Progress | None = None,
     ) -> History:
         """Carry the contact, flat and relaxed at first, through the motion.
 
@@ -84,7 +92,7 @@ class Energy:
             warnings.warn(warning, stacklevel=4)  # the caller of the mode
         return history
 
-    def expected_seconds(self, contact, motion) -> float:
+    def expected_seconds(self, contact: Any, motion: Any) -> float:
         """Order of magnitude of a run at the default tolerance, s on one core, as measured."""
         cycles = getattr(motion, "periods", 1)
         return 4e-3 * cycles + 2e-5 * cohesive_lengths_crossed(contact, motion)
