@@ -12,8 +12,7 @@ import xarray as xr
 from rich.console import Console
 from rich.table import Table
 
-from softafm.draw.results import plot
-from softafm.experiment.config import load_experiment
+import softafm as sa
 from softafm.units.quantities import write_quantity
 
 SPEEDS = ("5 um/s", "2 um/s", "1 um/s")
@@ -23,7 +22,7 @@ OBSERVABLES = ("force_max", "force_min", "loop_energy", "virial", "dissipation")
 def run_example(name: str, *overrides: str) -> tuple[xr.Dataset, float]:
     """Run a bundled experiment; return its result and the seconds it took."""
     with as_file(files("softafm") / "examples" / f"{name}.toml") as path:
-        experiment = load_experiment(path, overrides)
+        experiment = sa.load_experiment(path, overrides)
     start = time.perf_counter()
     result = experiment.run()
     return result, time.perf_counter() - start
@@ -61,8 +60,8 @@ def main() -> None:
     console.print(table_of({**named, "tap\non LDPE": tap}))
 
     pictures = {
-        "attard-triangle.png": plot([result for result, _ in triangles.values()], [*triangles]),
-        "ldpe-tapping.png": plot(tap[0]),
+        "attard-triangle.png": sa.plot([result for result, _ in triangles.values()], [*triangles]),
+        "ldpe-tapping.png": sa.plot(tap[0]),
     }
     out.mkdir(parents=True, exist_ok=True)
     for name, figure in pictures.items():

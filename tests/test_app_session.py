@@ -17,7 +17,7 @@ from softafm.app.take_away import write_netcdf
 from softafm.app.worker import refuse_large
 from softafm.draw.summary import list_observables
 from softafm.experiment.config import experiment_from
-from softafm.experiment.regime import Row
+from softafm.experiment.scales import Row
 
 TAP = read_presets()["ldpe-tapping"]
 

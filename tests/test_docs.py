@@ -1,5 +1,6 @@
 """Examples of the documents are run, so that they cannot rot."""
 
+import importlib
 import importlib.util
 import json
 import re
@@ -281,6 +282,36 @@ def test_the_tap_of_the_first_page_runs(tmp_path):
     assert float(tap.dissipation) == pytest.approx(4.00e-17, rel=0.02)
 
 
+def test_the_first_force_curve_is_what_the_tutorial_says(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    page = example_module("first-force-curve.md", tmp_path)
+    curve = page.curve
+    assert page.contact.tabor_relaxed == pytest.approx(8.8, abs=0.05)
+    assert page.contact.cohesive_length == pytest.approx(3.4e-9, abs=0.05e-9)
+    assert float(curve.force_max) == pytest.approx(199e-9, rel=0.01)
+    assert float(curve.force_min) == pytest.approx(-223e-9, rel=0.01)
+    assert float(curve.loop_energy) == pytest.approx(14e-15, rel=0.01)
+    assert curve.jump_energy.values == pytest.approx([11.7e-15, 2.2e-15], rel=0.02)
+    assert float(curve.force_min) == pytest.approx(page.load.min(), rel=0.01)
+    heights = np.interp(curve.jump_time, curve.time, curve.tip_height)
+    assert heights == pytest.approx([54e-9, 122e-9], abs=0.5e-9)
+    assert float(page.again.loop_energy) == float(curve.loop_energy)
+    assert (tmp_path / "curve.png").stat().st_size > 10_000
+
+
+def test_the_first_tap_is_what_the_tutorial_says(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "ldpe-tapping.toml").write_text(example_text("ldpe-tapping"), encoding="utf-8")
+    page = example_module("first-tap.md", tmp_path)
+    assert page.regime.tabor_instantaneous == pytest.approx(0.45, abs=0.005)
+    assert page.regime.tabor_relaxed == pytest.approx(3.3, abs=0.05)
+    assert float(page.tap.dissipation) == pytest.approx(87e-18, rel=0.01)
+    assert float(page.slower.dissipation / page.tap.dissipation) == pytest.approx(2.7, rel=0.02)
+    assert float(page.steady.dissipation / page.first.dissipation) == pytest.approx(0.25, abs=0.02)
+    assert (tmp_path / "tap.png").exists()
+    assert (tmp_path / "creep.png").exists()
+
+
 def test_the_solver_tables_of_the_command_line_page_hold_the_defaults(tmp_path):
     page = (DOCS / "command-line.md").read_text(encoding="utf-8")
     path = tmp_path / "experiment.toml"
@@ -291,6 +322,22 @@ def test_the_solver_tables_of_the_command_line_page_hold_the_defaults(tmp_path):
     segments, functions = solvers
     assert replace(segments, domain=None, relaxation=None) == sa.solvers.Attard()
     assert replace(functions, domain=None) == sa.solvers.EnhancedAttard()
+
+
+def test_the_reference_holds_every_public_name_and_no_other():
+    pages = "\n".join(page.read_text(encoding="utf-8") for page in (DOCS / "api").glob("*.md"))
+    described = re.findall(r"^::: softafm\.(\S+)$", pages, re.M)
+    assert len(described) == len(set(described))
+    public = {name for name in described if "." not in name}
+    assert public == set(sa.__all__)
+    for name in set(described) - public:  # of what public functions return or raise
+        room, _, thing = f"softafm.{name}".rpartition(".")
+        assert getattr(importlib.import_module(room), thing).__doc__
+
+
+def test_every_public_name_has_a_docstring():
+    for name in sa.__all__:
+        assert (getattr(sa, name).__doc__ or "").strip(), name
 
 
 # Command line
@@ -346,7 +393,7 @@ def _inline(value):
 
 
 def test_documents_install_a_copy_of_the_repository_as_it_is_not_published():
-    pages = [DOCS.parent / "README.md", *sorted(DOCS.glob("*.md"))]
+    pages = [DOCS.parent / "README.md", *sorted(DOCS.rglob("*.md"))]
     texts = {page.name: page.read_text(encoding="utf-8") for page in pages}
     for name, text in texts.items():
         targets = re.findall(r"pip install (?:-e )?['\"]?([^\s'\"`]+)", text)

@@ -1,9 +1,9 @@
 """Atomic force microscopy on soft, adhesive, viscoelastic surfaces from first principles."""
 
-__version__ = "0.1.0"
+__version__ = "0.2.0"
 
 from importlib import import_module
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from softafm import indentation, samples, solvers
 from softafm.contact import Contact
@@ -14,6 +14,7 @@ from softafm.draw.sample import plot_rheology
 from softafm.draw.storyboard import plot_profiles
 from softafm.draw.tip import plot_tip
 from softafm.errors import AccuracyWarning, DivergedError, DoubtfulValueWarning
+from softafm.files.measured import read_trajectory
 from softafm.instrument.cantilever import Cantilever
 from softafm.instrument.motions import Sine, Trajectory, Triangle
 from softafm.modes.approach import approach_curve
@@ -63,8 +64,13 @@ from softafm.tips import (
 
 if TYPE_CHECKING:
     from softafm.draw.maps import plot_map
+    from softafm.draw.results import plot
+    from softafm.experiment.config import load_experiment
+    from softafm.experiment.regime import regime
+    from softafm.experiment.run import run
     from softafm.maps.gwyddion import export_gwyddion
     from softafm.maps.imaging import AmplitudeModulation, ForceVolume
+    from softafm.maps.map_file import load_map
     from softafm.maps.sample_map import SampleMap
     from softafm.maps.scan import scan
     from softafm.sweeps.designs import Between
@@ -121,7 +127,10 @@ __all__ = [
     "force_spectroscopy",
     "indentation",
     "load",
+    "load_experiment",
+    "load_map",
     "load_sweep",
+    "plot",
     "plot_contact",
     "plot_map",
     "plot_profiles",
@@ -131,6 +140,9 @@ __all__ = [
     "read_dma",
     "read_law",
     "read_tip_profile",
+    "read_trajectory",
+    "regime",
+    "run",
     "samples",
     "save",
     "scan",
@@ -145,15 +157,24 @@ _LATER = {
     "ForceVolume": "maps.imaging",
     "SampleMap": "maps.sample_map",
     "export_gwyddion": "maps.gwyddion",
+    "load_experiment": "experiment.config",
+    "load_map": "maps.map_file",
     "load_sweep": "sweeps.sweep",
+    "plot": "draw.results",
     "plot_map": "draw.maps",
+    "regime": "experiment.regime",
+    "run": "experiment.run",
     "scan": "maps.scan",
     "sweep": "sweeps.sweep",
 }
 """Names and their modules, imported when first asked for."""
 
 
-def __getattr__(name: str):
+def __dir__() -> list[str]:
+    return [*__all__, "__version__"]
+
+
+def __getattr__(name: str) -> Any:
     if name not in _LATER:
         raise AttributeError(f"module 'softafm' has no attribute '{name}'")
     return getattr(import_module(f"softafm.{_LATER[name]}"), name)

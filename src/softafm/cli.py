@@ -1,4 +1,4 @@
-"""The command line: ``softafm example``, ``info``, ``show``, ``run``, ``plot`` and more.
+"""The command line: ``softafm example``, ``info``, ``show``, ``run``, ``plot``, ``docs`` and more.
 
 Everything heavy is imported inside the commands, so that ``softafm --help`` answers at once.
 """
@@ -186,6 +186,28 @@ def example(
     _save_content(text.encode(), out, force)
     command = "scan" if name in map_names() else "run"
     typer.echo(f"wrote {out}; run it with: softafm {command} {out}")
+
+
+@app.command()
+def docs(
+    name: Annotated[str | None, typer.Argument(help="Which page; none lists them.")] = None,
+) -> None:
+    """List the pages of the documents, or show one."""
+    from softafm.files.documents import folder, page_text, page_titles
+
+    if name is None:
+        for known, title in page_titles().items():
+            typer.echo(f"{known:20} {title}")
+        typer.echo(f"show one with: softafm docs NAME; all are in {folder()}")
+        return
+    with _report_bad_input():
+        text = page_text(name)
+    if not sys.stdout.isatty():
+        typer.echo(text, nl=False)
+        return
+    from rich.markdown import Markdown
+
+    _print(Markdown(text))
 
 
 @app.command()

@@ -5,6 +5,7 @@ from functools import cached_property
 from math import inf, pi, sqrt
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from softafm.checks.kinds import SAMPLE, refuse_incomplete, refuse_other
 from softafm.checks.validate import tabor_of
@@ -44,7 +45,7 @@ class Contact:
     sample: Solid
     surface: SurfaceLaw
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         refuse_other("tip", self.tip, Tip, "a tip such as softafm.Paraboloid")
         refuse_incomplete("sample", self.sample, SAMPLE, "a sample such as softafm.Elastic")
         refuse_other(
@@ -155,8 +156,8 @@ class Contact:
         """Return the contact with a law of longer range, at the same work of adhesion.
 
         All lengths of the law grow until the Tabor number of the softened sample is ``tabor``.
-        Where it is that or below already, the contact is returned as it is. ``docs/soft.md`` tells
-        what changes and what does not.
+        Where it is that or below already, the contact is returned as it is. ``softafm docs soft``
+        tells what changes and what does not.
 
         Raises
         ------
@@ -202,7 +203,7 @@ class Contact:
         """Width ℓ = E z0²/W of the tension zone at the short-term modulus, m."""
         return self._cohesive_length(self._modulus_instantaneous)
 
-    def rigid_force(self, tip_height):
+    def rigid_force(self, tip_height: ArrayLike) -> np.ndarray:
         """Force at tip heights (m) above a flat surface that does not deform, N.
 
         2π ∫ p(h0 + g) r dr; of a paraboloid 2πRΦ(h0) (Derjaguin 1934).

@@ -1,5 +1,7 @@
 """What softafm warns of and raises besides ValueError."""
 
+from typing import Any
+
 
 class AccuracyWarning(UserWarning):
     """A run could not resolve what its tolerance asks for; the text says what, and the remedy.
@@ -28,6 +30,6 @@ class DivergedError(RuntimeError):
         The ``softafm.solvers.History`` up to the last good instant.
     """
 
-    def __init__(self, message: str, history=None):
+    def __init__(self, message: str, history: Any = None):
         super().__init__(message)
         self.history = history

@@ -9,6 +9,7 @@ from math import pi
 from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from softafm.checks.validate import positive, refuse_masked
 
@@ -20,7 +21,7 @@ _PANELS = pi / 2 * np.append(0.0, 4.0 ** np.arange(-16, 1))
 _HALVINGS = 52
 
 
-def depth(tip: "Tip", contact_radius):
+def depth(tip: "Tip", contact_radius: ArrayLike) -> np.ndarray:
     """Depth that ``tip`` is pressed in when the contact has a radius, without adhesion, m.
 
     δ(a) = a ∫ g'(r)/√(a² − r²) dr from 0 to a, in the unit of the contact radius, m.
@@ -38,7 +39,7 @@ def depth(tip: "Tip", contact_radius):
     return (radius * _mean_slopes(tip, radius)[0])[()]
 
 
-def load(tip: "Tip", contact_radius, modulus: float):
+def load(tip: "Tip", contact_radius: ArrayLike, modulus: float) -> np.ndarray:
     """Force on ``tip`` when the contact has a radius (m), without adhesion, N.
 
     F(a) = 2E* ∫ r² g'(r)/√(a² − r²) dr from 0 to a, with ``modulus`` the reduced E*, Pa.
@@ -56,7 +57,9 @@ def load(tip: "Tip", contact_radius, modulus: float):
     return (2 * modulus * radius**2 * _mean_slopes(tip, radius)[1])[()]
 
 
-def jkr_depth(tip: "Tip", contact_radius, modulus: float, work_of_adhesion: float):
+def jkr_depth(
+    tip: "Tip", contact_radius: ArrayLike, modulus: float, work_of_adhesion: float
+) -> np.ndarray:
     """Depth of ``tip`` in an adhesive contact with short-ranged forces, m; negative when pulled.
 
     δ(a) − √(2πaW/E*) with δ(a) as in ``depth``, ``modulus`` E* in Pa and ``work_of_adhesion`` W in
@@ -76,7 +79,9 @@ def jkr_depth(tip: "Tip", contact_radius, modulus: float, work_of_adhesion: floa
     return (depth(tip, radius) - _stretch(radius, modulus, work_of_adhesion))[()]
 
 
-def jkr_load(tip: "Tip", contact_radius, modulus: float, work_of_adhesion: float):
+def jkr_load(
+    tip: "Tip", contact_radius: ArrayLike, modulus: float, work_of_adhesion: float
+) -> np.ndarray:
     """Force on ``tip`` in an adhesive contact with short-ranged forces, N; negative when pulled.
 
     F(a) − √(8πE*Wa³) with F(a) as in ``load``; parameters, refusals and source as of ``jkr_depth``.
@@ -86,7 +91,7 @@ def jkr_load(tip: "Tip", contact_radius, modulus: float, work_of_adhesion: float
     return (load(tip, radius, modulus) - 2 * modulus * radius * stretch)[()]
 
 
-def contact_radius(tip: "Tip", depth):
+def contact_radius(tip: "Tip", depth: ArrayLike) -> np.ndarray:
     """Contact radius at which ``tip`` is ``depth`` (m) deep without adhesion, m; 0 above 0 m.
 
     Raises
@@ -107,7 +112,7 @@ def contact_radius(tip: "Tip", depth):
     return low[()]
 
 
-def force(tip: "Tip", depth, modulus: float):
+def force(tip: "Tip", depth: ArrayLike, modulus: float) -> np.ndarray:
     """Force on ``tip`` when it is ``depth`` (m) deep without adhesion, N; 0 above 0 m.
 
     ``modulus`` is the reduced E*, Pa. Refusals are those of ``contact_radius`` and ``load``.
@@ -115,7 +120,7 @@ def force(tip: "Tip", depth, modulus: float):
     return load(tip, contact_radius(tip, depth), modulus)
 
 
-def hertz_force(radius: float, depth, modulus: float):
+def hertz_force(radius: float, depth: ArrayLike, modulus: float) -> np.ndarray:
     """Force on a paraboloid of apex ``radius`` R (m), (4/3) E* √R δ^(3/2), N; 0 above 0 m.
 
     Raises
@@ -183,7 +188,7 @@ def _work(value: float) -> float:
     return positive("work_of_adhesion", value, "J/m²")
 
 
-def _not_negative(name: str, values) -> np.ndarray:
+def _not_negative(name: str, values: ArrayLike) -> np.ndarray:
     refuse_masked(name, values)
     array = np.asarray(values, float)
     bad = ~(np.isfinite(array) & (array >= 0))

@@ -38,7 +38,7 @@ class Limits:
     upload_bytes: int = 20_000_000
     kept_bytes: int = 500_000_000
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         whole("processes", self.processes, 1, 256)
         whole("waiting", self.waiting, 1, 10_000)
         whole("listed", self.listed, 1, 1000)

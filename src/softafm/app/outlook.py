@@ -10,7 +10,8 @@ from softafm.app.files import refuse_paths
 from softafm.app.form import list_tables
 from softafm.checks.refusals import ConfigError, shown
 from softafm.experiment.config import experiment_from
-from softafm.experiment.regime import Row, expected_seconds, rows
+from softafm.experiment.regime import expected_seconds, rows
+from softafm.experiment.scales import Row
 
 _OPTIONAL = ("solver", "run")
 _LONGEST_PATH = 60

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from rich.table import Table
 
-    from softafm.experiment.regime import Row
+    from softafm.experiment.scales import Row
 
 STYLE = """
 :host { color: var(--softafm-text, inherit); font-size: 13px; line-height: 1.4; }

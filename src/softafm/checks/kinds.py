@@ -43,7 +43,7 @@ def refuse_non_dataset(name: str, value: Any) -> None:
     refuse_other(name, value, Dataset, "a result of softafm, an xarray.Dataset")
 
 
-def list_of(name: str, value: Any, kind: type, wanted: str) -> list:
+def list_of(name: str, value: Any, kind: type, wanted: str) -> list[Any]:
     """Return one object of a class, or a sequence of such, as a list; else raise ValueError."""
     if isinstance(value, kind):
         return [value]

@@ -69,7 +69,7 @@ def reword(table: str, written: Mapping[str, Any], error: Exception) -> str | No
     if index is not None and isinstance(value, list):
         name, value = f"{name}[{index}]", value[int(index)]
 
-    def other(mention: re.Match) -> str:
+    def other(mention: re.Match[str]) -> str:
         key = _find_key(mention[1], written)
         return f"{table}.{key} = {shown(written[key])}" if key in written else mention[0]
 

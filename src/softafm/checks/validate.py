@@ -1,6 +1,7 @@
 """One-line refusals of bad numbers: field, value, unit and what would be valid."""
 
 from math import isfinite
+from typing import Any
 
 import numpy as np
 
@@ -49,7 +50,7 @@ def between(name: str, value: float, unit: str, least: float, most: float) -> fl
     return number
 
 
-def numbers(name: str, values, unit: str) -> tuple[float, ...]:
+def numbers(name: str, values: Any, unit: str) -> tuple[float, ...]:
     """Return the values as a tuple of finite floats, else raise ValueError naming the entry."""
     if isinstance(values, str | bytes | dict) or not hasattr(values, "__iter__"):
         raise ValueError(f"{name} = {values!r}: must be a list of numbers{_in(unit)}")
@@ -61,7 +62,7 @@ def numbers(name: str, values, unit: str) -> tuple[float, ...]:
     return found
 
 
-def refuse_masked(name: str, values) -> None:
+def refuse_masked(name: str, values: Any) -> None:
     """Raise ValueError if entries of an array are masked: NumPy would read through the mask."""
     if not isinstance(values, np.ma.MaskedArray):
         return
@@ -77,7 +78,7 @@ def whole(name: str, value: int, least: int, most: int) -> int:
     return value
 
 
-def one_of(name: str, value, choices: tuple):
+def one_of(name: str, value: Any, choices: tuple[Any, ...]) -> Any:
     """Return ``value`` if it is one of the choices."""
     if not any(
         value is choice or (isinstance(value, str) and value == choice) for choice in choices

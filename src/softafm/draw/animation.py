@@ -48,7 +48,7 @@ FrameReport = Callable[[int], None]
 
 def animate(
     result: "Dataset",
-    path,
+    path: str | Path,
     *,
     frames: int = 150,
     seconds: float = 6.0,

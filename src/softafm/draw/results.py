@@ -4,11 +4,14 @@ from collections.abc import Sequence
 
 import xarray as xr
 from matplotlib.figure import Figure
+from numpy.typing import ArrayLike
 
 from softafm.checks.kinds import list_of
 from softafm.checks.refusals import one_of
 from softafm.draw.approach import draw_approach_curve
 from softafm.draw.panels import draw_panels
+from softafm.draw.reference import NAME as REFERENCE
+from softafm.draw.reference import draw_curve
 from softafm.draw.style import COLOURS, choose_labels
 from softafm.modes import MODES
 from softafm.results.content import MAPS
@@ -17,7 +20,9 @@ __all__ = ["COLOURS", "plot"]
 
 
 def plot(
-    datasets: xr.Dataset | Sequence[xr.Dataset], labels: Sequence[str] | None = None
+    datasets: xr.Dataset | Sequence[xr.Dataset],
+    labels: Sequence[str] | None = None,
+    reference: xr.Dataset | tuple[ArrayLike, ArrayLike] | None = None,
 ) -> Figure:
     """Draw one result, or several of the same mode over each other.
 
@@ -27,6 +32,11 @@ def plot(
         What a mode returned, or a sequence of such.
     labels
         A name for each dataset, shown in the legend; "run 1", "run 2", ... by default.
+    reference
+        What to compare them with: one more result of the same mode, or a closed form of force
+        against tip height, as a pair of heights (m) and forces (N), such as
+        ``(-indentation.depth(tip, a), indentation.load(tip, a, modulus))``. It is drawn as a dotted
+        line, within the range of the results.
 
     Returns
     -------
@@ -39,11 +49,21 @@ def plot(
     Raises
     ------
     ValueError
-        If there is nothing to draw, if the modes differ or have no figure, or if the number of
-        labels is not that of datasets.
+        If there is nothing to draw, if the modes differ or have no figure, if the number of
+        labels is not that of datasets, or if the figure cannot show the reference.
     """
     runs = list_of("datasets", datasets, xr.Dataset, "a result of softafm, an xarray.Dataset")
     names = choose_labels("dataset", runs, labels, (f"run {i + 1}" for i in range(len(runs))))
+    if isinstance(reference, xr.Dataset):
+        return _plot([*runs, reference], [*names, REFERENCE])
+    figure = _plot(runs, names)
+    if reference is not None:
+        draw_curve(figure, str(runs[0].attrs["mode"]), runs, reference)
+    return figure
+
+
+def _plot(runs: list[xr.Dataset], names: list[str]) -> Figure:
+    """Draw results of one mode, each with its name."""
     modes = sorted({str(run.attrs.get("mode")) for run in runs})
     known = [*MODES, *MAPS]
     if len(modes) > 1 or modes[0] not in known:

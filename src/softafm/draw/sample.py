@@ -4,6 +4,7 @@ from math import pi
 from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from softafm.checks.kinds import refuse_other
 from softafm.rheology.dma import sort_moduli
@@ -23,7 +24,7 @@ _DEEPEST = 1e8
 def plot_rheology(
     sample: Solid,
     window: tuple[float, float] | None = None,
-    data: tuple | None = None,
+    data: tuple[ArrayLike, ArrayLike, ArrayLike] | None = None,
 ) -> "Figure":
     """Draw a sample's creep compliance, relaxation modulus, storage and loss modulus.
 

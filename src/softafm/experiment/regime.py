@@ -1,17 +1,14 @@
-"""What an experiment is before it runs, and what it will cost: numbers, and a table for people."""
+"""What an experiment is before it runs, and what it will cost."""
 
+from collections.abc import Sequence
 from math import isfinite, log10
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from rich.table import Table
 
-from softafm.draw.summary import (
-    describe_misfit,
-    describe_regularisation,
-    describe_slowing,
-    make_table,
-)
+from softafm.draw.summary import describe_misfit, describe_regularisation, describe_slowing
+from softafm.experiment.run import Source, experiment_of
+from softafm.experiment.scales import Regime
 from softafm.instrument.motions import lowest_height
 from softafm.modes import MODES, Foreseen, Row
 from softafm.modes.start import regularise_contact
@@ -36,12 +33,37 @@ _FEW = 4
 """Creep times up to which each has a row of its own."""
 
 
-def regime(experiment: "Experiment") -> Table:
-    """Return a table of the numbers that say how a contact will behave and what it will cost."""
-    table = make_table(f"{experiment.mode}, before any run")
-    for row in rows(experiment):
-        table.add_row(*row)
-    return table
+def regime(experiment: Source, overrides: Sequence[str] = ()) -> Regime:
+    """Return the numbers that say how a contact will behave and what a run of it will cost.
+
+    Parameters
+    ----------
+    experiment, overrides
+        As ``softafm.run`` takes them. Nothing is run.
+
+    Returns
+    -------
+    Regime
+        Tabor numbers, cohesive lengths, depth and cost by name; ``print`` shows them as a table
+        with what each means, as ``softafm info`` does.
+
+    Raises
+    ------
+    ConfigError
+        As ``softafm.run``.
+    """
+    known = experiment_of(experiment, overrides)
+    contact, case = _case(known)
+    lowest = lowest_height(case.motion)
+    return Regime(
+        mode=known.mode,
+        contact=contact,
+        lowest_height=lowest,
+        contact_radius=contact.contact_radius(lowest),
+        duration=float(case.motion.breaks[-1] - case.motion.breaks[0]),
+        expected_seconds=expected_seconds(known),
+        rows=tuple(rows(known)),
+    )
 
 
 def rows(experiment: "Experiment") -> list[Row]:

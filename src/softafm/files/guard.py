@@ -91,7 +91,7 @@ def read_apart(
 
 
 @contextmanager
-def _start(command: Sequence[str]) -> Iterator[subprocess.Popen]:
+def _start(command: Sequence[str]) -> Iterator[subprocess.Popen[bytes]]:
     process = subprocess.Popen(
         command,
         stdin=subprocess.PIPE,
@@ -111,7 +111,7 @@ def _start(command: Sequence[str]) -> Iterator[subprocess.Popen]:
 
 
 @contextmanager
-def _kill_after(process: subprocess.Popen, seconds: float) -> Iterator[Event]:
+def _kill_after(process: subprocess.Popen[bytes], seconds: float) -> Iterator[Event]:
     """Kill a process that takes longer; the event tells whether that was done."""
     late = Event()
 

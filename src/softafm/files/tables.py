@@ -168,7 +168,7 @@ class Table:
             f"{quote(cell)}"
         )
 
-    def _require_decimal_commas(self, column: Column):
+    def _require_decimal_commas(self, column: Column) -> None:
         """Raise ValueError if commas within fields of a column need not be decimal ones."""
         every = [(n, i, cell) for n, cells in self._rows for i, cell in enumerate(cells)]
         commas = [entry for entry in every if _WITH_COMMA.fullmatch(entry[2])]

@@ -31,7 +31,7 @@ class Cantilever:
     quality_factor: float | None = None
     frequency: float | None = None
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         units = {"stiffness": "N/m", "quality_factor": "", "frequency": "Hz"}
         for name, unit in units.items():
             value = getattr(self, name)

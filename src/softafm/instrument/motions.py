@@ -6,9 +6,10 @@ One whose speed varies may tell how fast it gets for a while (``top_speed_betwee
 """
 
 from dataclasses import dataclass, replace
-from typing import ClassVar, Literal
+from typing import Any, ClassVar, Literal
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from softafm.checks.validate import finite, positive
 from softafm.instrument.trajectory import Trajectory
@@ -45,7 +46,7 @@ class Triangle:
     dwell: float = 0.0
     setpoint_force: float | None = None
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         object.__setattr__(self, "start", finite("start", self.start, "m"))
         object.__setattr__(self, "turn", finite("turn", self.turn, "m"))
         object.__setattr__(self, "speed", positive("speed", self.speed, "m/s"))
@@ -60,7 +61,7 @@ class Triangle:
 
     @classmethod
     def from_frequency(
-        cls, mean_height: float, amplitude: float, frequency: float, **options
+        cls, mean_height: float, amplitude: float, frequency: float, **options: Any
     ) -> "Triangle":
         """Build one period of a triangular wave, of speed 4·amplitude·frequency.
 
@@ -107,19 +108,19 @@ class Triangle:
     def _middle(self) -> float:
         return float(self.breaks[1] + self.dwell / 2)
 
-    def height(self, time):
+    def height(self, time: ArrayLike) -> np.ndarray:
         """Height at ``time`` (s), m."""
         away = np.abs(np.asarray(time, float) - self._middle) - self.dwell / 2
         return self.turn + self.speed * np.maximum(away, 0.0)
 
-    def velocity(self, time):
+    def velocity(self, time: ArrayLike) -> np.ndarray:
         """Velocity at ``time`` (s), m/s; at a corner, that after it."""
         down, up = self.breaks[1], self.breaks[-2]
         t = np.asarray(time)
         return np.where(t < down, -self.speed, np.where(t < up, 0.0, self.speed))
 
     @property
-    def compiled_height(self):
+    def compiled_height(self) -> tuple[Any, np.ndarray]:
         """The height as a compiled function and its parameters (see ``softafm.compiled``)."""
         from softafm.instrument.compiled_motions import triangle
 
@@ -152,7 +153,7 @@ class Sine:
     frequency: float
     cycles: int | Literal["steady"] = 1
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         object.__setattr__(self, "mean_height", finite("mean_height", self.mean_height, "m"))
         object.__setattr__(self, "amplitude", positive("amplitude", self.amplitude, "m"))
         object.__setattr__(self, "frequency", positive("frequency", self.frequency, "Hz"))
@@ -190,23 +191,23 @@ class Sine:
         """Largest magnitude of the velocity, m/s."""
         return 2 * np.pi * self.frequency * self.amplitude
 
-    def height(self, time):
+    def height(self, time: ArrayLike) -> np.ndarray:
         """Height at ``time`` (s), m."""
         phase = 2 * np.pi * self.frequency * np.asarray(time, float)
         return self.mean_height + self.amplitude * np.cos(phase)
 
-    def velocity(self, time):
+    def velocity(self, time: ArrayLike) -> np.ndarray:
         """Velocity at ``time`` (s), m/s."""
         return -self.top_speed * np.sin(2 * np.pi * self.frequency * np.asarray(time, float))
 
     @property
-    def compiled_height(self):
+    def compiled_height(self) -> tuple[Any, np.ndarray]:
         """The height as a compiled function and its parameters (see ``softafm.compiled``)."""
         from softafm.instrument.compiled_motions import sine
 
         return sine, np.array([self.mean_height, self.amplitude, self.frequency])
 
 
-def lowest_height(motion) -> float:
+def lowest_height(motion: Any) -> float:
     """Return the lowest height of any motion, m; it is met at a break or a landmark."""
     return float(np.min(motion.height(np.concatenate([motion.breaks, motion.landmarks]))))

@@ -1,8 +1,9 @@
 """A motion given by samples: straight between them, smooth through them, or fit to a record."""
 
-from typing import ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from softafm.checks.validate import positive, refuse_masked
 
@@ -48,7 +49,7 @@ class Trajectory:
     """Standard deviation of the noise of a measured path, m; None for samples taken as they are."""
     _noise_is_estimated: bool = False
 
-    def __init__(self, time, height, smooth: bool = False):
+    def __init__(self, time: ArrayLike, height: ArrayLike, smooth: bool = False) -> None:
         if not isinstance(smooth, bool):
             raise ValueError(f"smooth = {smooth!r}: must be True or False")
         self.time, self.heights = _samples(time, height)
@@ -65,7 +66,9 @@ class Trajectory:
         self._follow(self.time, cubics, self.time[1:-1][corner])
 
     @classmethod
-    def from_measurement(cls, time, height, noise: float | None = None) -> "Trajectory":
+    def from_measurement(
+        cls, time: ArrayLike, height: ArrayLike, noise: float | None = None
+    ) -> "Trajectory":
         """Draw the simplest path that a record with noise allows, and keep its corners sharp.
 
         A corner is where one polynomial fits the samples on both sides worse, beyond noise, than
@@ -114,7 +117,7 @@ class Trajectory:
         path._follow(fit.knots, fit.cubics, fit.corners)
         return path
 
-    def _follow(self, knots: np.ndarray, cubics: np.ndarray, corners: np.ndarray):
+    def _follow(self, knots: np.ndarray, cubics: np.ndarray, corners: np.ndarray) -> None:
         """Take for the path cubics between n knots: shape (4, n − 1), highest power first."""
         from scipy.interpolate import PPoly
 
@@ -129,7 +132,7 @@ class Trajectory:
         calm = _calm_stretches(knots, self._speeds, float(np.ptp(self._path(points))))
         self.landmarks = _read_only(np.setdiff1d(np.union1d(turns, calm), knots[[0, -1]]))
 
-    def __eq__(self, other):
+    def __eq__(self, other: object) -> bool:
         if not isinstance(other, Trajectory):
             return NotImplemented
         return (
@@ -138,17 +141,17 @@ class Trajectory:
             and np.array_equal(self.heights, other.heights)
         )
 
-    def __hash__(self):
+    def __hash__(self) -> int:
         return hash((self.smooth, self.noise, self.time.tobytes(), self.heights.tobytes()))
 
-    def __repr__(self):
+    def __repr__(self) -> str:
         noise = "" if self.noise is None else f", noise {self.noise:.2g} m"
         smooth = ", smooth" if self.smooth else ""
         span = f"{self.time[0]:g} to {self.time[-1]:g} s"
         return f"Trajectory({self.time.size} points, {span}{smooth}{noise})"
 
     @property
-    def description(self) -> dict:
+    def description(self) -> dict[str, Any]:
         """What results keep: the samples, and how the path was drawn."""
         path = {"smooth": self.smooth} if self.noise is None else {"noise": self.noise}
         return {"time": self.time.tolist(), "height": self.heights.tolist(), **path}
@@ -207,23 +210,23 @@ class Trajectory:
         last = np.searchsorted(self._path.x, end, side="left")
         return float(self._speeds[first:last].max())
 
-    def height(self, time):
+    def height(self, time: ArrayLike) -> np.ndarray:
         """Height at ``time`` (s), m."""
         return self._path(time)
 
-    def velocity(self, time):
+    def velocity(self, time: ArrayLike) -> np.ndarray:
         """Velocity at ``time`` (s), m/s; at a corner, that after it."""
         return self._rate(time)
 
     @property
-    def compiled_height(self):
+    def compiled_height(self) -> tuple[Any, np.ndarray]:
         """The height as a compiled function and its parameters (see ``softafm.compiled``)."""
         from softafm.instrument.compiled_motions import sampled
 
         return sampled, np.concatenate([self._path.x, self._path.c.ravel()])
 
 
-def _samples(time, height) -> tuple[np.ndarray, np.ndarray]:
+def _samples(time: ArrayLike, height: ArrayLike) -> tuple[np.ndarray, np.ndarray]:
     """Return copies of samples that make a motion, read-only, or raise ValueError."""
     time, height = as_numbers("time", time), as_numbers("height", height)
     if time.ndim != 1 or time.shape != height.shape or time.size < 2:
@@ -244,7 +247,7 @@ def _samples(time, height) -> tuple[np.ndarray, np.ndarray]:
     return _read_only(time), _read_only(height)
 
 
-def as_numbers(name: str, values) -> np.ndarray:
+def as_numbers(name: str, values: ArrayLike) -> np.ndarray:
     """Return a copy of ``values`` as an array of floats, or raise ValueError naming them."""
     refuse_masked(name, values)
     try:

@@ -1,5 +1,6 @@
 """Maps as files of Gwyddion, the program in which AFM images are looked at (gwyddion.net)."""
 
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -15,7 +16,7 @@ _FIRST = ("topography", "phase", "dissipation", "force_min", "loop_energy")
 _GOLD = "Gold"
 
 
-def export_gwyddion(result: "Dataset", path, *, overwrite: bool = False) -> None:
+def export_gwyddion(result: "Dataset", path: str | Path, *, overwrite: bool = False) -> None:
     """Write the maps of a ``scan`` to a .gwy file, a channel each; pixels of NaN are masked.
 
     The file appears whole or not at all.

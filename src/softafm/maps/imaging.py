@@ -42,7 +42,7 @@ class AmplitudeModulation:
     drive_frequency: float | None = None
     engaged: Literal["approach", "attractive", "repulsive"] = "approach"
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         refuse_other_than_cantilever(self.cantilever)
         free = positive("free_amplitude", self.free_amplitude, "m")
         setpoint = finite("setpoint", self.setpoint, "(amplitude over free amplitude)")
@@ -74,7 +74,7 @@ class ForceVolume:
     motion: Triangle | Sine | Trajectory
     cantilever: Cantilever | None = None
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         kinds = Triangle, Sine, Trajectory
         refuse_other("motion", self.motion, kinds, "a Triangle, a Sine or a Trajectory")
         if self.cantilever is not None:

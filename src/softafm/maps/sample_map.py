@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from softafm.checks.kinds import list_of, refuse_other
 from softafm.checks.validate import positive, refuse_masked
@@ -34,7 +35,7 @@ class SampleMap:
 
     Every pixel is a flat half-space of its own with the properties of that pixel: nothing couples
     neighbours, and slopes of the topography do not count. So features should be wider than the
-    contact.
+    contact. Rows of arrays run along y, downwards as in an image.
 
     Parameters
     ----------
@@ -51,8 +52,6 @@ class SampleMap:
     height
         Height of the surface, m, (ny, nx); 0 by default. It shifts the topography and no more.
 
-    Rows run along y, downwards as in an image.
-
     Raises
     ------
     ValueError
@@ -66,7 +65,7 @@ class SampleMap:
     labels: Any = None
     height: Any = None
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         materials = tuple(list_of("materials", self.materials, Contact, "a softafm.Contact"))
         if not materials:
             raise ValueError("materials = []: must be a softafm.Contact, or several in a list")
@@ -106,7 +105,14 @@ class SampleMap:
             object.__setattr__(self, name, value)
 
     @classmethod
-    def mixed(cls, share, one: Contact, other: Contact, size, height=None) -> "SampleMap":
+    def mixed(
+        cls,
+        share: ArrayLike,
+        one: Contact,
+        other: Contact,
+        size: ArrayLike,
+        height: ArrayLike | None = None,
+    ) -> "SampleMap":
         """Build a blend whose numbers go geometrically from ``one`` to ``other``.
 
         Parameters
@@ -149,7 +155,13 @@ class SampleMap:
         return cls(one, size, arrays, height=height)
 
     @classmethod
-    def from_image(cls, image, material: Contact, size, ranges: Mapping) -> "SampleMap":
+    def from_image(
+        cls,
+        image: ArrayLike | str | Path,
+        material: Contact,
+        size: ArrayLike,
+        ranges: Mapping[str, Any],
+    ) -> "SampleMap":
         """Build a map from the grey values of an image, black the first and white the second value.
 
         Parameters
@@ -177,7 +189,11 @@ class SampleMap:
 
     @classmethod
     def from_labelled_image(
-        cls, image, materials: Sequence[Contact], size, height=None
+        cls,
+        image: ArrayLike | str | Path,
+        materials: Sequence[Contact],
+        size: ArrayLike,
+        height: ArrayLike | None = None,
     ) -> "SampleMap":
         """Build a map from an image with one grey for each material, the darkest for the first."""
         grey = find_grey_values(image)
@@ -238,7 +254,7 @@ class SampleMap:
         return replace(material, **parts) if values else material
 
 
-def find_grey_values(image) -> np.ndarray:
+def find_grey_values(image: ArrayLike | str | Path) -> np.ndarray:
     """Return an image's grey values from 0, black, to 1, white; arrays must be so already."""
     if isinstance(image, str | Path):
         from PIL import Image, UnidentifiedImageError

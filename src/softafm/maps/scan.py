@@ -38,7 +38,7 @@ def scan(
     sample: SampleMap,
     imaging: AmplitudeModulation | ForceVolume,
     *,
-    solver=None,
+    solver: Any = None,
     tolerance: float = 1e-2,
     regularise: float | None = None,
     workers: int = 1,

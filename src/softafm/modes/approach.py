@@ -9,6 +9,7 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from softafm.checks.callers import warn_caller
 from softafm.checks.gathering import Placed, collect_warnings, gather
@@ -43,10 +44,10 @@ def approach_curve(
     contact: Contact,
     cantilever: Cantilever,
     free_amplitude: float,
-    amplitude_ratio,
+    amplitude_ratio: ArrayLike,
     *,
     drive_frequency: float | None = None,
-    solver=None,
+    solver: Any = None,
     tolerance: float = 1e-2,
     progress: bool | Progress | None = None,
     check: bool = False,

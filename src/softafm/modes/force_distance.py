@@ -20,7 +20,7 @@ def force_distance(
     contact: Contact,
     motion: Triangle | Sine | Trajectory,
     *,
-    solver=None,
+    solver: Any = None,
     tolerance: float = 1e-2,
     profiles: bool = False,
     progress: bool | Progress | None = None,
@@ -50,8 +50,8 @@ def force_distance(
     regularise
         Tabor number, 0.1 to 100, to which that of a softer contact is lowered by enlarging the
         range of the surface law at fixed work of adhesion (``Contact.regularised``). What adhesion
-        a viscoelastic sample has at a speed depends on the range: ``docs/soft.md`` tells what to
-        do. The law as it was given stays in the attribute ``experiment``.
+        a viscoelastic sample has at a speed depends on the range: ``softafm docs soft`` tells what
+        to do. The law as it was given stays in the attribute ``experiment``.
 
     Returns
     -------

@@ -21,7 +21,7 @@ def force_spectroscopy(
     cantilever: Cantilever,
     motion: Triangle | Sine | Trajectory,
     *,
-    solver=None,
+    solver: Any = None,
     tolerance: float = 1e-2,
     profiles: bool = False,
     progress: bool | Progress | None = None,

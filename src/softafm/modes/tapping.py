@@ -25,7 +25,7 @@ def tapping_cycle(
     frequency: float,
     cycles: int | Literal["steady"] = "steady",
     *,
-    solver=None,
+    solver: Any = None,
     tolerance: float = 1e-2,
     profiles: bool = False,
     progress: bool | Progress | None = None,

@@ -170,7 +170,7 @@ def _collect_provenance(mode, contact, parts, solver, tolerance, warnings, diagn
     }
 
 
-def save(result: "Dataset", path, *, overwrite: bool = False) -> None:
+def save(result: "Dataset", path: str | Path, *, overwrite: bool = False) -> None:
     """Write a result to a NetCDF-4 file; an existing file is replaced only with ``overwrite``.
 
     The file appears whole or not at all.
@@ -190,7 +190,7 @@ def save(result: "Dataset", path, *, overwrite: bool = False) -> None:
     write_whole(path, overwrite, lambda part: Path(part).write_bytes(content))
 
 
-def load(path, *, largest: float = LARGEST) -> "Dataset":
+def load(path: str | Path, *, largest: float = LARGEST) -> "Dataset":
     """Read a result written by ``save``, whole, and close the file.
 
     What lies outside the file is never read, even if the file says that it belongs to it.
@@ -219,7 +219,9 @@ def load(path, *, largest: float = LARGEST) -> "Dataset":
         raise ValueError(f"{path}: {problem}") from None
 
 
-def load_apart(path, *, largest: float = LARGEST, seconds: float | None = None) -> "Dataset":
+def load_apart(
+    path: str | Path, *, largest: float = LARGEST, seconds: float | None = None
+) -> "Dataset":
     """Read a result of someone else, as ``load`` does, in a process of its own.
 
     A damaged file that makes the reading go on for ever, or end its process, harms no one then.
@@ -289,7 +291,7 @@ def _holds_text(value) -> bool:
     return isinstance(value, list) and any(isinstance(each, str) for each in value)
 
 
-def export(result: "Dataset", path, *, overwrite: bool = False) -> None:
+def export(result: "Dataset", path: str | Path, *, overwrite: bool = False) -> None:
     """Write the curves over time to CSV, or the whole result to HDF5, by the path's suffix.
 
     CSV columns are named ``name (unit)``; the scalars stand above them as comments. Of an approach

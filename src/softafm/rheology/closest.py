@@ -27,7 +27,9 @@ def ends(frequency: np.ndarray, storage: np.ndarray, loss: np.ndarray) -> tuple[
     return fastest / (2 * pi * frequency[-1]), _SLOWEST / (2 * pi * frequency[0])
 
 
-def columns(times: np.ndarray, frequency, storage, loss) -> np.ndarray:
+def columns(
+    times: np.ndarray, frequency: np.ndarray, storage: np.ndarray, loss: np.ndarray
+) -> np.ndarray:
     """Return what unit moduli add to storage and, below, loss, relative to what was measured.
 
     The shape is (2n, 1 + m) for n frequencies (Hz) and m ``times`` (s); E_inf comes first.
@@ -37,7 +39,9 @@ def columns(times: np.ndarray, frequency, storage, loss) -> np.ndarray:
     return np.vstack([terms.real / storage[:, None], terms.imag / loss[:, None]])
 
 
-def delays(times: np.ndarray, frequency, storage, loss) -> np.ndarray:
+def delays(
+    times: np.ndarray, frequency: np.ndarray, storage: np.ndarray, loss: np.ndarray
+) -> np.ndarray:
     """Return the derivatives of such columns, without that of E_inf, by ln λ; shape (2n, m)."""
     lag = 2j * pi * frequency[:, None] * times
     slopes = lag / (1 + lag) ** 2
@@ -53,7 +57,9 @@ def closest(rows: np.ndarray) -> np.ndarray:
     return moduli / norms
 
 
-def closest_of_all(frequency, storage, loss) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+def closest_of_all(
+    frequency: np.ndarray, storage: np.ndarray, loss: np.ndarray
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Return relaxation times (s), E_inf and moduli (Pa), and the fit relative to the data (2n)."""
     first, last = ends(frequency, storage, loss)
     times = np.geomspace(first, last, ceil(_DENSE * log10(last / first)) + 1)

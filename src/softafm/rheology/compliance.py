@@ -4,6 +4,7 @@ from math import inf
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from softafm.checks.validate import positive
 
@@ -24,13 +25,13 @@ class ReducedCompliance(NamedTuple):
     retardation_times: np.ndarray
     fluidity: float = 0.0
 
-    def at(self, time):
+    def at(self, time: ArrayLike) -> np.ndarray:
         """Creep compliance at ``time`` (s) after a step of load, 1/Pa."""
         t = np.asarray(time, float)[..., None]
         creep = np.sum(self.modes * -np.expm1(-t / self.retardation_times), axis=-1)
         return self.instantaneous + creep + self.fluidity * t[..., 0]
 
-    def complex_at(self, angular_frequency):
+    def complex_at(self, angular_frequency: ArrayLike) -> np.ndarray:
         """Complex compliance J_g + Σ J_m/(1 + iωτ_m) + φ/(iω) at ω > 0 (rad/s), 1/Pa."""
         s = 1j * np.asarray(angular_frequency, float)[..., None]
         modes = np.sum(self.modes / (1 + s * self.retardation_times), axis=-1)

@@ -1,8 +1,10 @@
 """Measured storage and loss moduli, and how far a sample is from them."""
 
 import warnings
+from typing import Any
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from softafm.errors import AccuracyWarning
 from softafm.rheology.lists import samples
@@ -15,7 +17,9 @@ _REPEATED = 1.2
 """Largest ratio of storage moduli measured twice at one frequency."""
 
 
-def dma_misfit(sample, frequency, storage, loss) -> tuple[float, float]:
+def dma_misfit(
+    sample: Any, frequency: ArrayLike, storage: ArrayLike, loss: ArrayLike
+) -> tuple[float, float]:
     """Return the largest and the root mean square relative misfit of a sample to measured moduli.
 
     Storage and loss modulus (Pa, at ``frequency`` in Hz) are each compared with their own value.
@@ -24,7 +28,7 @@ def dma_misfit(sample, frequency, storage, loss) -> tuple[float, float]:
     return float(np.max(np.abs(misfit))), float(np.sqrt(np.mean(misfit**2)))
 
 
-def warn_of_misfit(sample, frequency, storage, loss) -> None:
+def warn_of_misfit(sample: Any, frequency: ArrayLike, storage: ArrayLike, loss: ArrayLike) -> None:
     """Warn, on behalf of what called the caller, of a sample that is far from what was measured."""
     data = sort_moduli(frequency, storage, loss)
     largest, rms = dma_misfit(sample, *data)
@@ -41,13 +45,17 @@ def warn_of_misfit(sample, frequency, storage, loss) -> None:
     )
 
 
-def _misfit(sample, frequency, storage, loss) -> np.ndarray:
+def _misfit(
+    sample: Any, frequency: np.ndarray, storage: np.ndarray, loss: np.ndarray
+) -> np.ndarray:
     """Return the relative misfit of storage and loss modulus, shape (2, n)."""
     moduli = sample.storage_modulus(frequency), sample.loss_modulus(frequency)
     return np.array([moduli[0] / storage - 1, moduli[1] / loss - 1])
 
 
-def sort_moduli(frequency, storage, loss) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+def sort_moduli(
+    frequency: ArrayLike, storage: ArrayLike, loss: ArrayLike
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Return measured moduli as arrays by rising frequency.
 
     What was measured twice at a frequency stays twice, if it is of one measurement.

@@ -31,7 +31,7 @@ class Elastic(Solid):
     E: float
     poisson: float
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         object.__setattr__(self, "E", positive("E", self.E, "Pa"))
         object.__setattr__(self, "poisson", poisson_ratio(self.poisson))
 

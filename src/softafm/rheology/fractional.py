@@ -58,7 +58,7 @@ class FractionalStandardLinearSolid(Represented):
     poisson: float
     error: float = 0.01
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         object.__setattr__(self, "E0", positive("E0", self.E0, "Pa"))
         object.__setattr__(self, "E_inf", positive("E_inf", self.E_inf, "Pa"))
         object.__setattr__(self, "creep_time", positive("creep_time", self.creep_time, "s"))
@@ -89,7 +89,7 @@ class _ColeCole(NamedTuple):
     exponent: float
     flows: bool = False
 
-    def creep(self, time):
+    def creep(self, time: np.ndarray) -> np.ndarray:
         """Integrate over the spectrum, of which the share u has times below τ·x(u)."""
         a = self.exponent
         # u = 1/(1 + e^−v), by the trapezoidal rule in v: the ends fall off as e^−|v|.
@@ -101,6 +101,6 @@ class _ColeCole(NamedTuple):
         crept = -np.expm1(-np.asarray(time)[..., None] * rates) @ shares
         return self.instantaneous + (1 - self.instantaneous) * crept
 
-    def complex_compliance(self, angular_frequency):
+    def complex_compliance(self, angular_frequency: np.ndarray) -> np.ndarray:
         rise = (1j * angular_frequency * self.creep_time) ** self.exponent
         return self.instantaneous + (1 - self.instantaneous) / (1 + rise)

@@ -7,10 +7,11 @@ exact by measuring each zero from its nearest pole, so that weak terms lose noth
 """
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 
 def prony_to_chain(
-    E_inf: float, moduli, relaxation_times
+    E_inf: float, moduli: ArrayLike, relaxation_times: ArrayLike
 ) -> tuple[float, np.ndarray, np.ndarray, float]:
     """Return the creep compliance of E(t) = E_inf + Σ E_k exp(−t/λ_k).
 
@@ -42,7 +43,10 @@ def prony_to_chain(
 
 
 def chain_to_prony(
-    instantaneous: float, compliances, retardation_times, fluidity: float = 0.0
+    instantaneous: float,
+    compliances: ArrayLike,
+    retardation_times: ArrayLike,
+    fluidity: float = 0.0,
 ) -> tuple[float, np.ndarray, np.ndarray]:
     """Return the relaxation modulus of J(t) = J_g + Σ J_m (1 − exp(−t/τ_m)) + φ t.
 
@@ -73,7 +77,7 @@ def chain_to_prony(
     return E_inf, moduli, zeros
 
 
-def _merged(weights, times) -> tuple[np.ndarray, np.ndarray]:
+def _merged(weights: ArrayLike, times: ArrayLike) -> tuple[np.ndarray, np.ndarray]:
     """Return the terms by rising time, equal times added and zero weights left out."""
     weights, times = np.asarray(weights, float), np.asarray(times, float)
     times, group = np.unique(times[weights > 0], return_inverse=True)
@@ -120,7 +124,9 @@ def _zeros(poles: np.ndarray, weights: np.ndarray, level: float) -> tuple[np.nda
     return poles[nearest] + side * half * np.exp(y), distances
 
 
-def _halves(distances: np.ndarray, weights: np.ndarray, level: float):
+def _halves(
+    distances: np.ndarray, weights: np.ndarray, level: float
+) -> tuple[np.ndarray, np.ndarray]:
     """Return the positive and the negative terms of Σ w_i/(x − p_i) − level, both as sums > 0."""
     terms = weights / distances
     above = np.sum(np.where(terms > 0, terms, 0), axis=1)

@@ -43,7 +43,7 @@ class KelvinVoigt(Solid):
     creep_time: float
     poisson: float
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         object.__setattr__(self, "E", positive("E", self.E, "Pa"))
         object.__setattr__(self, "creep_time", positive("creep_time", self.creep_time, "s"))
         object.__setattr__(self, "poisson", poisson_ratio(self.poisson))
@@ -108,7 +108,7 @@ class GeneralizedKelvinVoigt(Solid):
     retardation_times: tuple[float, ...]
     poisson: float
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         object.__setattr__(self, "E0", positive("E0", self.E0, "Pa"))
         object.__setattr__(self, "poisson", poisson_ratio(self.poisson))
         compliances = positives("compliances", self.compliances, "1/Pa")

@@ -1,11 +1,13 @@
 """One-line refusals of bad lists of numbers: field, index, value, unit and what would be valid."""
 
+from typing import Any
+
 import numpy as np
 
 from softafm.checks.validate import numbers, refuse_masked
 
 
-def positives(name: str, values, unit: str, *, zeros: bool = False) -> tuple[float, ...]:
+def positives(name: str, values: Any, unit: str, *, zeros: bool = False) -> tuple[float, ...]:
     """Return the values as a tuple of floats above zero, or not below it if ``zeros``."""
     checked = numbers(name, values, unit)
     for index, number in enumerate(checked):
@@ -17,7 +19,7 @@ def positives(name: str, values, unit: str, *, zeros: bool = False) -> tuple[flo
     return checked
 
 
-def as_many(name: str, values: tuple, as_name: str, as_values: tuple) -> None:
+def as_many(name: str, values: tuple[Any, ...], as_name: str, as_values: tuple[Any, ...]) -> None:
     """Refuse two lists of different lengths."""
     if len(values) != len(as_values):
         raise ValueError(
@@ -25,7 +27,7 @@ def as_many(name: str, values: tuple, as_name: str, as_values: tuple) -> None:
         )
 
 
-def samples(name: str, values, unit: str, least: float | None = None) -> np.ndarray:
+def samples(name: str, values: Any, unit: str, least: float | None = None) -> np.ndarray:
     """Return numbers as an array of floats if all are above zero, or at least ``least``."""
     refuse_masked(name, values)
     try:
@@ -41,7 +43,7 @@ def samples(name: str, values, unit: str, least: float | None = None) -> np.ndar
     return array
 
 
-def window_of(values) -> tuple[float, float]:
+def window_of(values: Any) -> tuple[float, float]:
     """Return the shortest and the longest time of a window (s)."""
     times = positives("window", values, "s")
     if len(times) != 2 or not times[0] < times[1]:

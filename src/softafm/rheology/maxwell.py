@@ -7,6 +7,7 @@ from math import fsum
 from typing import ClassVar
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from softafm.checks.validate import finite, poisson_ratio, positive
 from softafm.errors import AccuracyWarning
@@ -46,7 +47,7 @@ class Maxwell(Solid):
     relaxation_time: float
     poisson: float
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         object.__setattr__(self, "E0", positive("E0", self.E0, "Pa"))
         time = positive("relaxation_time", self.relaxation_time, "s")
         object.__setattr__(self, "relaxation_time", time)
@@ -114,7 +115,7 @@ class GeneralizedMaxwell(Solid):
     relaxation_times: tuple[float, ...]
     poisson: float
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         E_inf = finite("E_inf", self.E_inf, "Pa")
         if E_inf < 0:
             raise ValueError(f"E_inf = {E_inf:g} Pa: must be positive, or 0 if the sample flows")
@@ -130,7 +131,7 @@ class GeneralizedMaxwell(Solid):
 
     @classmethod
     def from_shear(
-        cls, G_inf: float, shear_moduli, relaxation_times, poisson: float
+        cls, G_inf: float, shear_moduli: ArrayLike, relaxation_times: ArrayLike, poisson: float
     ) -> "GeneralizedMaxwell":
         """Build from shear moduli at constant Poisson's ratio: E = 2(1 + ν)G.
 
@@ -146,12 +147,12 @@ class GeneralizedMaxwell(Solid):
         if G_inf < 0:
             raise ValueError(f"G_inf = {G_inf:g} Pa: must be positive, or 0 if the sample flows")
         shear_moduli = positives("shear_moduli", shear_moduli, "Pa", zeros=True)
-        moduli = tuple(factor * G for G in shear_moduli)
-        return cls(factor * G_inf, moduli, relaxation_times, poisson)
+        times = positives("relaxation_times", relaxation_times, "s")
+        return cls(factor * G_inf, tuple(factor * G for G in shear_moduli), times, poisson)
 
     @classmethod
     def from_ratios(
-        cls, E0: float, ratios, relaxation_times, poisson: float
+        cls, E0: float, ratios: ArrayLike, relaxation_times: ArrayLike, poisson: float
     ) -> "GeneralizedMaxwell":
         """Build from a normalised series, E_k = ratio_k·E0, E_inf = (1 − Σ ratios)·E0.
 
@@ -182,11 +183,17 @@ class GeneralizedMaxwell(Solid):
                 AccuracyWarning,
                 stacklevel=2,
             )
-        return cls(E_inf, tuple(E0 * ratio for ratio in ratios), relaxation_times, poisson)
+        times = positives("relaxation_times", relaxation_times, "s")
+        return cls(E_inf, tuple(E0 * ratio for ratio in ratios), times, poisson)
 
     @classmethod
     def from_dma(
-        cls, frequency, storage, loss, poisson: float, per_decade: float = 2
+        cls,
+        frequency: ArrayLike,
+        storage: ArrayLike,
+        loss: ArrayLike,
+        poisson: float,
+        per_decade: float = 2,
     ) -> "GeneralizedMaxwell":
         """Fit measured Young's moduli by a series of as few terms as their noise tells apart.
 

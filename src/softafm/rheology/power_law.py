@@ -4,6 +4,8 @@ from dataclasses import dataclass
 from math import gamma
 from typing import ClassVar, NamedTuple
 
+import numpy as np
+
 from softafm.checks.validate import poisson_ratio, positive
 from softafm.rheology.lists import window_of
 from softafm.rheology.represented import Represented, exponent_of
@@ -53,7 +55,7 @@ class PowerLaw(Represented):
     reference_time: float = 1.0
     error: float = 0.01
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         time = positive("reference_time", self.reference_time, "s")
         object.__setattr__(self, "E1", positive("E1", self.E1, "Pa"))
         object.__setattr__(self, "exponent", exponent_of(self.exponent))
@@ -92,8 +94,8 @@ class _Springpot(NamedTuple):
     exponent: float
     flows: bool = True
 
-    def creep(self, time):
+    def creep(self, time: np.ndarray) -> np.ndarray:
         return time**self.exponent / gamma(1 + self.exponent)
 
-    def complex_compliance(self, angular_frequency):
+    def complex_compliance(self, angular_frequency: np.ndarray) -> np.ndarray:
         return (1j * angular_frequency) ** -self.exponent

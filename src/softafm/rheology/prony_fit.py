@@ -5,6 +5,7 @@ from math import log
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from softafm.checks.validate import finite
 from softafm.rheology.closest import (
@@ -27,7 +28,7 @@ something to gain for ever."""
 
 
 def fit_prony(
-    frequency, storage, loss, per_decade: float = 2
+    frequency: ArrayLike, storage: ArrayLike, loss: ArrayLike, per_decade: float = 2
 ) -> tuple[float, tuple[float, ...], tuple[float, ...]]:
     """Fit E_inf, moduli and relaxation times to measured moduli.
 

@@ -4,6 +4,9 @@ from abc import abstractmethod
 from functools import cached_property
 from math import pi
 
+import numpy as np
+from numpy.typing import ArrayLike
+
 from softafm.checks.validate import finite
 from softafm.rheology.compliance import ReducedCompliance
 from softafm.rheology.lists import samples
@@ -65,11 +68,11 @@ class Represented(Solid):
             factor * chain.fluidity / time,
         )
 
-    def exact_creep_compliance(self, time):
+    def exact_creep_compliance(self, time: ArrayLike) -> np.ndarray:
         """Uniaxial creep compliance of the law itself at ``time`` > 0 (s), 1/Pa."""
         return self._scale * self._response.creep(samples("time", time, "s") / self.window[0])
 
-    def exact_complex_compliance(self, frequency):
+    def exact_complex_compliance(self, frequency: ArrayLike) -> np.ndarray:
         """Uniaxial complex compliance of the law itself at ``frequency`` > 0 (Hz), 1/Pa."""
         angular = 2 * pi * samples("frequency", frequency, "Hz")
         return self._scale * self._response.complex_compliance(angular * self.window[0])

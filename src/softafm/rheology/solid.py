@@ -6,6 +6,7 @@ from math import pi
 from typing import ClassVar
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from softafm.rheology.compliance import ReducedCompliance
 from softafm.rheology.interconversion import chain_to_prony
@@ -40,24 +41,24 @@ class Solid(ABC):
         """E_inf, moduli and relaxation times of the reduced modulus."""
         return chain_to_prony(*self.reduced_compliance)
 
-    def creep_compliance(self, time):
+    def creep_compliance(self, time: ArrayLike) -> np.ndarray:
         """Uniaxial creep compliance 1/E(t) at ``time`` ≥ 0 (s) after a step of stress, 1/Pa."""
         return self.reduced_compliance.at(samples("time", time, "s", 0)) / (1 - self.poisson**2)
 
-    def relaxation_modulus(self, time):
+    def relaxation_modulus(self, time: ArrayLike) -> np.ndarray:
         """Young's relaxation modulus at ``time`` ≥ 0 (s) after a step of strain, Pa."""
         t = samples("time", time, "s", 0)[..., None]
         E_inf, moduli, times = self._prony
         return (1 - self.poisson**2) * (E_inf + np.sum(moduli * np.exp(-t / times), axis=-1))
 
-    def storage_modulus(self, frequency):
+    def storage_modulus(self, frequency: ArrayLike) -> np.ndarray:
         """Young's storage modulus E' at ``frequency`` > 0 (Hz), Pa."""
         return self._complex_modulus(frequency).real
 
-    def loss_modulus(self, frequency):
+    def loss_modulus(self, frequency: ArrayLike) -> np.ndarray:
         """Young's loss modulus E'' at ``frequency`` > 0 (Hz), Pa."""
         return self._complex_modulus(frequency).imag
 
-    def _complex_modulus(self, frequency):
+    def _complex_modulus(self, frequency: ArrayLike) -> np.ndarray:
         angular = 2 * pi * samples("frequency", frequency, "Hz")
         return (1 - self.poisson**2) / self.reduced_compliance.complex_at(angular)

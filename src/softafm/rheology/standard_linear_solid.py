@@ -40,7 +40,7 @@ class StandardLinearSolid(Solid):
     creep_time: float
     poisson: float
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         object.__setattr__(self, "E0", positive("E0", self.E0, "Pa"))
         object.__setattr__(self, "E_inf", positive("E_inf", self.E_inf, "Pa"))
         object.__setattr__(self, "creep_time", positive("creep_time", self.creep_time, "s"))

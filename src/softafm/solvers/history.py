@@ -1,5 +1,6 @@
 """What every solver returns: the contact's history."""
 
+from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -50,7 +51,13 @@ class History:
     """What the solver doubts; it has warned of it, too."""
     _quadratures: dict = field(default_factory=dict, init=False, repr=False, compare=False)
 
-    def integrate(self, values, weight, start=-np.inf, stop=np.inf) -> float:
+    def integrate(
+        self,
+        values: np.ndarray,
+        weight: Callable[[np.ndarray], Any],
+        start: float = -np.inf,
+        stop: float = np.inf,
+    ) -> float:
         """∫ values(t) weight(t) dt from ``start`` to ``stop`` (s).
 
         ``values`` (n,) is interpolated in every step by the cubic through its four nearest
@@ -83,7 +90,9 @@ class History:
                     rules.append((piece, at, half * _WEIGHTS, near, basis))
         return self._quadratures[key]
 
-    def extreme(self, values, sign: int, start=-np.inf, stop=np.inf) -> float:
+    def extreme(
+        self, values: np.ndarray, sign: int, start: float = -np.inf, stop: float = np.inf
+    ) -> float:
         """Largest (``sign`` 1) or smallest (-1) of ``values`` (n,) between two times (s).
 
         Refined by the parabola through the extreme step and its neighbours in the same piece, where

@@ -41,7 +41,7 @@ class VanDerWaalsAttraction(SurfaceLaw):
     hamaker: float
     cutoff: float = 0.165e-9
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         object.__setattr__(self, "hamaker", positive("hamaker", self.hamaker, "J"))
         object.__setattr__(self, "cutoff", check_length("cutoff", self.cutoff))
 
@@ -51,7 +51,7 @@ class VanDerWaalsAttraction(SurfaceLaw):
         return (Term(attraction, (self.hamaker, self.cutoff)),)
 
 
-def attraction(h, H, cutoff):
+def attraction(h: np.ndarray, H: float, cutoff: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Evaluate −H/(6πh³), within ``cutoff`` its osculating parabola, slope and potential."""
     scale = H / (6 * pi * cutoff * cutoff * cutoff)
     ratio = h / cutoff

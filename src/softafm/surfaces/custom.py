@@ -2,9 +2,10 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from softafm.compiled.formulas import Term, bound_parameters, find_first_line
 from softafm.surfaces.law import SurfaceLaw
@@ -45,10 +46,10 @@ class CustomSurface(SurfaceLaw):
     """
 
     kind: ClassVar[str] = "custom"
-    function: Callable
+    function: Callable[..., Any]
     parameters: tuple[tuple[str, float], ...]
 
-    def __init__(self, function: Callable, /, **parameters: float):
+    def __init__(self, function: Callable[..., Any], /, **parameters: float) -> None:
         object.__setattr__(self, "function", function)
         object.__setattr__(self, "parameters", bound_parameters(function, "gap", parameters))
         self._refuse_what_is_no_law()
@@ -58,7 +59,7 @@ class CustomSurface(SurfaceLaw):
         """The function with the values of its parameters."""
         return (Term(self.function, tuple(value for _, value in self.parameters)),)
 
-    def _evaluate(self, gap):
+    def _evaluate(self, gap: ArrayLike) -> tuple[np.ndarray, ...]:
         h = np.asarray(gap, float)
         flat = np.ascontiguousarray(h).ravel()
         pressure, potential, values = self.compiled_pressure
@@ -103,7 +104,7 @@ class CustomSurface(SurfaceLaw):
             )
 
 
-def _differentiate(function, h):
+def _differentiate(function: Callable[[np.ndarray], np.ndarray], h: np.ndarray) -> np.ndarray:
     step = _STEP * h
     near = function(h + step) - function(h - step)
     return (8 * near - (function(h + 2 * step) - function(h - 2 * step))) / (12 * step)

@@ -62,7 +62,7 @@ class DLVO(SurfaceLaw):
     permittivity: float = 78.4
     tip_potential: float | None = None
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         psi = between("surface_potential", self.surface_potential, "V", -1, 1)
         object.__setattr__(self, "hamaker", positive("hamaker", self.hamaker, "J"))
         object.__setattr__(self, "z0", check_length("z0", self.z0))

@@ -47,7 +47,7 @@ class DMT(SurfaceLaw):
     z0: float
     wall: float = 0.1
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         object.__setattr__(self, "hamaker", positive("hamaker", self.hamaker, "J"))
         object.__setattr__(self, "z0", check_length("z0", self.z0))
         object.__setattr__(self, "wall", between("wall", self.wall, "", *_WALLS))

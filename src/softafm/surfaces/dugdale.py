@@ -53,7 +53,7 @@ class Dugdale(SurfaceLaw):
     tension: float
     smoothing: float = 0.1
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         W = positive("work_of_adhesion", self.work_of_adhesion, "J/m²")
         object.__setattr__(self, "work_of_adhesion", W)
         object.__setattr__(self, "z0", check_length("z0", self.z0))
@@ -104,7 +104,9 @@ class Dugdale(SurfaceLaw):
         return ratio
 
 
-def _dugdale(h, tension, z0, width, q):
+def _dugdale(
+    h: np.ndarray, tension: float, z0: float, width: float, q: float
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     near = np.exp(np.minimum((z0 - h) / width, 600.0))
     wall, inside = near / (1 + q), near / (near + q)
     slope = tension / width * (inside * (1 - inside) - wall)

@@ -39,7 +39,7 @@ class Exponential(SurfaceLaw):
     decay: float
     core: float
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         W = positive("work_of_adhesion", self.work_of_adhesion, "J/m²")
         object.__setattr__(self, "work_of_adhesion", W)
         object.__setattr__(self, "z0", check_length("z0", self.z0))

@@ -1,11 +1,13 @@
 """What all surface laws are asked for, and how it follows from their formulas."""
 
 from abc import ABC, abstractmethod
+from collections.abc import Callable
 from functools import cached_property
 from math import inf, sqrt
-from typing import ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from softafm.compiled.formulas import Term
 
@@ -42,19 +44,19 @@ class SurfaceLaw(ABC):
     def terms(self) -> tuple[Term, ...]:
         """The formulas whose sum the law is, with their parameters."""
 
-    def pressure(self, gap):
+    def pressure(self, gap: ArrayLike) -> np.ndarray:
         """Pressure at ``gap`` (m), positive = repulsive, Pa."""
         return self._evaluate(gap)[0]
 
-    def slope(self, gap):
+    def slope(self, gap: ArrayLike) -> np.ndarray:
         """dp/dh at ``gap`` (m), Pa/m."""
         return self._evaluate(gap)[1]
 
-    def potential(self, gap):
+    def potential(self, gap: ArrayLike) -> np.ndarray:
         """Interaction energy per area Φ at ``gap`` (m), J/m²; Φ' = −p."""
         return self._evaluate(gap)[2]
 
-    def _evaluate(self, gap):
+    def _evaluate(self, gap: ArrayLike) -> tuple[np.ndarray, ...]:
         h = np.asarray(gap, float)
         with np.errstate(over="ignore", under="ignore"):
             results = [term(h) for term in self.terms]
@@ -135,7 +137,7 @@ class SurfaceLaw(ABC):
         )
 
     @property
-    def compiled_pressure(self):
+    def compiled_pressure(self) -> tuple[Any, Any, np.ndarray]:
         """p and Φ compiled for solvers, and their parameters (see ``softafm.compiled``)."""
         from softafm.compiled.functions import compile_pressure
 
@@ -177,7 +179,7 @@ class SurfaceLaw(ABC):
         return _find_root(self.pressure, _GAPS[inside], min(gap, _GAPS[inside + 1]))
 
 
-def _find_root(function, low: float, high: float) -> float:
+def _find_root(function: Callable[[float], Any], low: float, high: float) -> float:
     from scipy.optimize import brentq
 
     return float(brentq(lambda gap: float(function(gap)), low, high, xtol=1e-16 * high, rtol=1e-14))

@@ -4,6 +4,8 @@ from dataclasses import dataclass, replace
 from math import pi
 from typing import ClassVar
 
+import numpy as np
+
 from softafm.checks.validate import positive
 from softafm.compiled.formulas import Term
 from softafm.surfaces.law import SurfaceLaw
@@ -34,7 +36,7 @@ class LennardJones(SurfaceLaw):
     hamaker: float
     z0: float
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         object.__setattr__(self, "hamaker", positive("hamaker", self.hamaker, "J"))
         object.__setattr__(self, "z0", positive("z0", self.z0, "m"))
 
@@ -82,7 +84,7 @@ class LennardJones(SurfaceLaw):
         return (Term(_lennard_jones, (self.hamaker, self.z0)),)
 
 
-def _lennard_jones(h, H, z0):
+def _lennard_jones(h: np.ndarray, H: float, z0: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     inverse = 1 / h
     attraction = H / (6 * pi) * inverse * inverse * inverse
     ratio = z0 * inverse

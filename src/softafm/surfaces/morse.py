@@ -41,7 +41,7 @@ class Morse(SurfaceLaw):
     z0: float
     decay: float
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         W = positive("work_of_adhesion", self.work_of_adhesion, "J/m²")
         object.__setattr__(self, "work_of_adhesion", W)
         object.__setattr__(self, "z0", check_length("z0", self.z0))
@@ -68,7 +68,9 @@ class Morse(SurfaceLaw):
         return (Term(_morse, (self.work_of_adhesion, self.z0, self.decay)),)
 
 
-def _morse(h, W, z0, decay):
+def _morse(
+    h: np.ndarray, W: float, z0: float, decay: float
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     far = np.exp((z0 - h) / decay)
     rate = 2 / decay * W * far
     return rate * (far - 1), rate / decay * (1 - 2 * far), W * far * (far - 2)

@@ -33,7 +33,7 @@ class Repulsion(SurfaceLaw):
     pressure_at_zero: float
     decay: float
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         P0 = positive("pressure_at_zero", self.pressure_at_zero, "Pa")
         object.__setattr__(self, "pressure_at_zero", P0)
         object.__setattr__(self, "decay", check_length("decay", self.decay))
@@ -44,7 +44,9 @@ class Repulsion(SurfaceLaw):
         return (Term(exponential, (self.pressure_at_zero, 0.0, self.decay)),)
 
 
-def exponential(h, pressure, origin, decay):
+def exponential(
+    h: np.ndarray, pressure: float, origin: float, decay: float
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Evaluate ``pressure``·exp(−(h − origin)/decay), its slope, and its potential."""
     p = pressure * np.exp((origin - h) / decay)
     return p, -p / decay, p * decay

@@ -1,7 +1,11 @@
 """A sum of surface laws."""
 
 from dataclasses import dataclass
-from typing import ClassVar
+from functools import reduce
+from typing import Any, ClassVar
+
+import numpy as np
+from numpy.typing import ArrayLike
 
 from softafm.compiled.formulas import Term
 from softafm.surfaces.law import SurfaceLaw
@@ -26,7 +30,7 @@ class SumOfLaws(SurfaceLaw):
     kind: ClassVar[str] = "sum"
     parts: tuple[SurfaceLaw, ...]
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         object.__setattr__(self, "parts", _check_laws(self.parts))
 
     @property
@@ -39,12 +43,12 @@ class SumOfLaws(SurfaceLaw):
         """The terms of all parts."""
         return tuple(term for part in self.parts for term in part.terms)
 
-    def _evaluate(self, gap):
+    def _evaluate(self, gap: ArrayLike) -> tuple[np.ndarray, ...]:
         results = [part._evaluate(gap) for part in self.parts]
-        return tuple(sum(parts) for parts in zip(*results, strict=True))
+        return tuple(reduce(np.add, parts) for parts in zip(*results, strict=True))
 
 
-def _check_laws(given) -> tuple[SurfaceLaw, ...]:
+def _check_laws(given: Any) -> tuple[SurfaceLaw, ...]:
     if isinstance(given, str | bytes | dict) or not hasattr(given, "__iter__"):
         raise ValueError(f"parts = {given!r}: must be a list of surface laws")
     flat: list[SurfaceLaw] = []

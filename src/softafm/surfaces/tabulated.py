@@ -50,7 +50,7 @@ class Tabulated(SurfaceLaw):
     gaps: tuple[float, ...]
     pressures: tuple[float, ...]
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         gaps, pressures = (
             numbers("gaps", self.gaps, "m"),
             numbers("pressures", self.pressures, "Pa"),
@@ -97,7 +97,7 @@ class Tabulated(SurfaceLaw):
         return (Term(_tabulated, tuple(table.tolist()), as_array=True),)
 
 
-def _tabulated(h, table):
+def _tabulated(h: np.ndarray, table: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     n = (table.size - 2) // 6
     first, last = table[2], table[n + 1]
     near = np.minimum(np.maximum(h, first), last)

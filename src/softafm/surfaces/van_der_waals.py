@@ -4,6 +4,8 @@ from dataclasses import dataclass, replace
 from math import pi
 from typing import ClassVar
 
+import numpy as np
+
 from softafm.checks.validate import finite, positive
 from softafm.compiled.formulas import Term
 from softafm.surfaces.law import SurfaceLaw
@@ -40,7 +42,7 @@ class VanDerWaals(SurfaceLaw):
     z0: float
     exponent: float = 9.0
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         object.__setattr__(self, "hamaker", positive("hamaker", self.hamaker, "J"))
         object.__setattr__(self, "z0", check_length("z0", self.z0))
         object.__setattr__(self, "exponent", _check_exponent(self.exponent))
@@ -94,7 +96,9 @@ class VanDerWaals(SurfaceLaw):
         return (Term(_van_der_waals, (self.hamaker, self.z0, self.exponent)),)
 
 
-def _van_der_waals(h, H, z0, n):
+def _van_der_waals(
+    h: np.ndarray, H: float, z0: float, n: float
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     inverse = 1 / h
     attraction = H / (6 * pi) * inverse * inverse * inverse
     repulsion = attraction * (z0 * inverse) ** (n - 3)

@@ -11,7 +11,7 @@ JOIN, SLOPE = sin(STEEPEST), tan(STEEPEST)
 """Radius at which an arc of radius 1 is as steep, and dg/dr there."""
 
 
-def arc_and_flank(r, flat, R, join, slope):
+def arc_and_flank(r: np.ndarray, flat: float, R: float, join: float, slope: float) -> np.ndarray:
     """Height of a profile flat to ``flat``, an arc of radius R for ``join`` more, then straight.
 
     The arc R − √(R² − x²) is written without the difference, which would cancel at small x.

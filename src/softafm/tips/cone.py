@@ -36,7 +36,7 @@ class Cone(Tip):
     half_angle: float
     apex_radius: float
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         object.__setattr__(self, "half_angle", check_half_angle(self.half_angle))
         object.__setattr__(self, "apex_radius", positive("apex_radius", self.apex_radius, "m"))
 

@@ -3,9 +3,10 @@
 from collections.abc import Callable
 from dataclasses import dataclass
 from math import log
-from typing import ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from softafm.compiled.formulas import Term, bound_parameters, find_first_line
 from softafm.tips.tip import Tip
@@ -42,10 +43,10 @@ class CustomTip(Tip):
     """
 
     kind: ClassVar[str] = "custom"
-    function: Callable
+    function: Callable[..., Any]
     parameters: tuple[tuple[str, float], ...]
 
-    def __init__(self, function: Callable, /, **parameters: float):
+    def __init__(self, function: Callable[..., Any], /, **parameters: float) -> None:
         object.__setattr__(self, "function", function)
         bound = bound_parameters(function, "radius", parameters)
         object.__setattr__(self, "parameters", bound)
@@ -56,7 +57,7 @@ class CustomTip(Tip):
         """The function with the values of its parameters."""
         return Term(self.function, tuple(value for _, value in self.parameters))
 
-    def profile(self, r):
+    def profile(self, r: ArrayLike) -> np.ndarray:
         """Height of the tip surface above its apex at radial coordinate ``r``, m."""
         r = np.asarray(r, float)
         compiled, values = self.compiled_profile

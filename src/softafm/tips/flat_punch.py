@@ -41,7 +41,7 @@ class FlatPunch(Tip):
     radius: float
     edge_radius: float
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         radius = positive("radius", self.radius, "m")
         edge = positive("edge_radius", self.edge_radius, "m")
         if edge > radius:

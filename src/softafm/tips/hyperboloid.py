@@ -37,7 +37,7 @@ class Hyperboloid(Tip):
     radius: float
     half_angle: float
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         object.__setattr__(self, "radius", positive("radius", self.radius, "m"))
         object.__setattr__(self, "half_angle", check_half_angle(self.half_angle))
 
@@ -52,6 +52,6 @@ class Hyperboloid(Tip):
         return sqrt(height * (2 * self.radius + height * tan(self.half_angle) ** 2))
 
 
-def _height(r, R, b):
+def _height(r: np.ndarray, R: float, b: float) -> np.ndarray:
     ratio = r / b
     return r * r / R / (np.sqrt(1 + ratio * ratio) + 1)

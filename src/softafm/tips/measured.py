@@ -42,7 +42,7 @@ class MeasuredTip(Tip):
     r: tuple[float, ...]
     height: tuple[float, ...]
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         r, height = numbers("r", self.r, "m"), numbers("height", self.height, "m")
         _refuse_what_is_no_profile(r, height)
         object.__setattr__(self, "r", r)
@@ -65,7 +65,7 @@ class MeasuredTip(Tip):
         return self.r[1:]
 
 
-def _height(r, table):
+def _height(r: np.ndarray, table: np.ndarray) -> np.ndarray:
     n = table.size // 3
     last = np.sqrt(table[n - 1])
     square = np.minimum(r * r, table[n - 1])

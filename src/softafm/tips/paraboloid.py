@@ -4,6 +4,8 @@ from dataclasses import dataclass
 from math import sqrt
 from typing import ClassVar
 
+import numpy as np
+
 from softafm.checks.validate import positive
 from softafm.compiled.formulas import Term
 from softafm.tips.tip import Tip, check_height
@@ -31,7 +33,7 @@ class Paraboloid(Tip):
     kind: ClassVar[str] = "paraboloid"
     radius: float
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         object.__setattr__(self, "radius", positive("radius", self.radius, "m"))
 
     @property
@@ -44,5 +46,5 @@ class Paraboloid(Tip):
         return sqrt(2 * self.radius * check_height(height))
 
 
-def _height(r, R):
+def _height(r: np.ndarray, R: float) -> np.ndarray:
     return r * r / (2 * R)

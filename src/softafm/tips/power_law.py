@@ -3,6 +3,8 @@
 from dataclasses import dataclass
 from typing import ClassVar
 
+import numpy as np
+
 from softafm.checks.validate import finite, positive
 from softafm.compiled.formulas import Term
 from softafm.tips.tip import Tip, check_height
@@ -44,7 +46,7 @@ class PowerLawTip(Tip):
     height: float
     radius: float
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         exponent = finite("exponent", self.exponent, "")
         if not 2 <= exponent <= _LARGEST:
             raise ValueError(
@@ -65,5 +67,5 @@ class PowerLawTip(Tip):
         return self.radius * (check_height(height) / self.height) ** (1 / self.exponent)
 
 
-def _height(r, n, height, radius):
+def _height(r: np.ndarray, n: float, height: float, radius: float) -> np.ndarray:
     return height * (r / radius) ** n

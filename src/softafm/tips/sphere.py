@@ -36,7 +36,7 @@ class Sphere(Tip):
     kind: ClassVar[str] = "sphere"
     radius: float
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         object.__setattr__(self, "radius", positive("radius", self.radius, "m"))
 
     @property

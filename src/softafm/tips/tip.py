@@ -2,9 +2,10 @@
 
 from abc import ABC, abstractmethod
 from math import inf
-from typing import ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from softafm.checks.validate import finite
 from softafm.compiled.formulas import Term
@@ -37,11 +38,11 @@ class Tip(ABC):
         """Radii, rising, at which the curvature of the profile jumps, m."""
         return ()
 
-    def profile(self, r):
+    def profile(self, r: ArrayLike) -> np.ndarray:
         """Height of the tip surface above its apex at radial coordinate ``r``, m."""
         return self.term(np.asarray(r, float))
 
-    def slope(self, r):
+    def slope(self, r: ArrayLike) -> np.ndarray:
         """dg/dr at radial coordinate ``r``, from differences that do not reach across joints.
 
         Its relative error is about 1e-12 between joints, and 1e-8 on one.
@@ -80,7 +81,7 @@ class Tip(ABC):
         return float(low)
 
     @property
-    def compiled_profile(self):
+    def compiled_profile(self) -> tuple[Any, np.ndarray]:
         """The profile compiled for solvers, and its parameters (see ``softafm.compiled``)."""
         from softafm.compiled.functions import compile_profile
 

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from decimal import Decimal
 from functools import cache
 from math import floor, inf, isfinite, log10
+from typing import Any
 
 from softafm.units import plain as plain_units
 from softafm.units.respelling import respell
@@ -66,7 +67,7 @@ def _find_si_factor(unit: str, kind: Kind) -> Decimal:
 
 
 @cache
-def _build_registry():
+def _build_registry() -> Any:
     """Build pint's registry once, when a unit is read that is not plain: it takes half a second."""
     import pint
 

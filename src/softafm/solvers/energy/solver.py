@@ -2,14 +2,15 @@
 
 from dataclasses import dataclass
 from time import perf_counter
-from typing import ClassVar
+from typing import Any, ClassVar
 
 from softafm.checks.callers import warn_caller
 from softafm.checks.validate import finite, positive
 from softafm.compiled.announce import announced_compilation
-from softafm.instrument.lever import check_lever, lever_of
+from softafm.instrument.lever import Lever, check_lever, lever_of
 from softafm.instrument.motion import count_periods, is_steady
 from softafm.instrument.motions import lowest_height
+from softafm.progress import Progress
 from softafm.solvers.history import History
 
 
@@ -21,7 +22,7 @@ class Energy:
     offset is the memory, by Newton's method; the memory is integrated exactly for a pressure
     quadratic in time. Steps adapt to the tolerance. Where no stable shape is near, the surface
     falls to the next one and the jump is recorded. The mesh rides with the contact edge and its
-    spacing there follows the width of the cohesive zone. ``docs/solver.md`` tells the whole.
+    spacing there follows the width of the cohesive zone. ``softafm docs solver`` has more.
 
     Parameters
     ----------
@@ -42,7 +43,7 @@ class Energy:
     finest_spacing: float = 5e-6
     most_steps: int = 2_000_000
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         spacing = positive("finest_spacing", self.finest_spacing, "contact radii")
         if spacing > 0.3:
             raise ValueError(f"finest_spacing = {spacing:g} contact radii: must be at most 0.3")
@@ -51,14 +52,14 @@ class Energy:
 
     def solve(
         self,
-        contact,
-        motion,
+        contact: Any,
+        motion: Any,
         *,
-        stiffness=None,
-        lever=None,
-        tolerance=1e-2,
-        profiles=False,
-        progress=None,
+        stiffness: float | None = None,
+        lever: Lever | None = None,
+        tolerance: float = 1e-2,
+        profiles: bool = False,
+        progress: Progress | None = None,
     ) -> History:
         """Carry the contact, flat and relaxed at first, through the motion.
 
@@ -105,7 +106,7 @@ class Energy:
             warn_caller(warning)
         return history
 
-    def expected_seconds(self, contact, motion) -> float:
+    def expected_seconds(self, contact: Any, motion: Any) -> float:
         """Order of magnitude of a run at the default tolerance, s on one core, as measured."""
         cycles = count_periods(motion)
         return 4e-3 * cycles + 2e-5 * cohesive_lengths_crossed(contact, motion)

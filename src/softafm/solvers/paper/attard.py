@@ -1,7 +1,7 @@
 """Attard's solver: the surface at equal nodes, its rates by iteration or by one linear solve."""
 
 from dataclasses import dataclass, field
-from typing import ClassVar, Literal
+from typing import Any, ClassVar, Literal
 
 import numpy as np
 
@@ -9,6 +9,7 @@ from softafm.checks.validate import one_of, positive, whole
 from softafm.compiled.announce import announced_compilation
 from softafm.halfspace.radial_functions import grid
 from softafm.halfspace.rings import ring_influence
+from softafm.progress import Progress
 from softafm.solvers.history import History
 from softafm.solvers.paper.stepping import ForwardEuler, Stepper, stepper_of
 
@@ -21,10 +22,10 @@ class Attard:
 
         (I − J_g K P') u̇ = −R − ḣ0 J_g K p',
 
-    where R is the creep (``docs/paper.md``). ``method="iterative"`` (setup A, Attard 2001) adjusts
-    a guess, at first the rate of the step before, until both sides agree; ``"explicit"`` (B,
-    Rajabifar et al. 2021, equation 14) solves the linear system. The mode's ``tolerance`` has no
-    influence: nodes and steps decide.
+    where R is the creep (``softafm docs paper``). ``method="iterative"`` (setup A, Attard 2001)
+    adjusts a guess, at first the rate of the step before, until both sides agree; ``"explicit"``
+    (B, Rajabifar et al. 2021, equation 14) solves the linear system. The mode's ``tolerance`` has
+    no influence: nodes and steps decide.
 
     Parameters
     ----------
@@ -64,7 +65,7 @@ class Attard:
     relaxation: float | None = None
     most_iterations: int = 100_000
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         whole("nodes", self.nodes, 2, 2000)
         if self.domain is not None:
             object.__setattr__(self, "domain", positive("domain", self.domain, "m"))
@@ -77,7 +78,14 @@ class Attard:
         whole("most_iterations", self.most_iterations, 1, 1_000_000_000)
 
     def solve(
-        self, contact, motion, *, stiffness=None, tolerance=1e-2, profiles=False, progress=None
+        self,
+        contact: Any,
+        motion: Any,
+        *,
+        stiffness: float | None = None,
+        tolerance: float = 1e-2,
+        profiles: bool = False,
+        progress: Progress | None = None,
     ) -> History:
         """Carry the contact, flat and relaxed at first, through the motion.
 
@@ -140,7 +148,7 @@ class Attard:
             progress=progress,
         )  # fmt: skip
 
-    def expected_seconds(self, contact, motion) -> float:
+    def expected_seconds(self, contact: Any, motion: Any) -> float:
         """Order of magnitude of a run, s on one core, as measured.
 
         How many iterations ``method="iterative"`` takes shows only in the run: 50 a rate are

@@ -1,7 +1,7 @@
 """The enhanced Attard's model: the surface as a sum of radial functions."""
 
 from dataclasses import dataclass, field
-from typing import ClassVar, Literal
+from typing import Any, ClassVar, Literal
 
 import numpy as np
 
@@ -9,6 +9,7 @@ from softafm.checks.validate import one_of, positive, whole
 from softafm.compiled.announce import announced_compilation
 from softafm.halfspace import radial_functions as functions
 from softafm.halfspace.rings import ring_influence
+from softafm.progress import Progress
 from softafm.solvers.history import History
 from softafm.solvers.paper.stepping import AdamsBashforth, Stepper, stepper_of
 
@@ -74,7 +75,7 @@ class EnhancedAttard:
     steps: int = 10_000
     stepper: Stepper = field(default_factory=AdamsBashforth)
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         whole("nodes", self.nodes, 2, 2000)
         whole("functions", self.functions, 1, self.nodes)
         one_of("basis", self.basis, functions.BASES)
@@ -87,7 +88,14 @@ class EnhancedAttard:
         stepper_of(self.stepper)
 
     def solve(
-        self, contact, motion, *, stiffness=None, tolerance=1e-2, profiles=False, progress=None
+        self,
+        contact: Any,
+        motion: Any,
+        *,
+        stiffness: float | None = None,
+        tolerance: float = 1e-2,
+        profiles: bool = False,
+        progress: Progress | None = None,
     ) -> History:
         """Carry the contact, flat and relaxed at first, through the motion.
 
@@ -121,7 +129,7 @@ class EnhancedAttard:
             profiles=profiles, progress=progress,
         )  # fmt: skip
 
-    def expected_seconds(self, contact, motion) -> float:
+    def expected_seconds(self, contact: Any, motion: Any) -> float:
         """Order of magnitude of a run, s on one core, as measured."""
         rate = 2e-6 + 3e-8 * self.nodes + self.functions**2 * (8e-9 + 4e-11 * self.nodes)
         if not self.orthogonal:

@@ -30,7 +30,7 @@ class AdamsBashforth:
     rates_per_step: ClassVar[int] = 1
     order: int = 2
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         object.__setattr__(self, "order", whole("order", self.order, 1, 5))
 
     @property
