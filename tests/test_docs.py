@@ -3,7 +3,10 @@
 import importlib
 import importlib.util
 import json
+import os
 import re
+import shutil
+import subprocess
 import sys
 import tomllib
 from dataclasses import replace
@@ -18,13 +21,14 @@ import softafm as sa
 from softafm import rheology, surfaces, tips
 from softafm.app.python_lines import python_lines
 from softafm.draw.results import plot
-from softafm.draw.summary import observables
+from softafm.draw.summary import list_observables
 from softafm.experiment import schema
 from softafm.experiment.config import example_text, experiment_from, load_experiment
 from softafm.experiment.regime import rows
-from softafm.sweeps.reading import campaign_of, table_of
+from softafm.sweeps.reading import make_campaign, read_table
 
 DOCS = Path(__file__).parents[1] / "docs"
+PACKAGE = Path(sa.__file__).parent
 
 
 def example_module(page, folder):
@@ -149,11 +153,8 @@ def test_the_motion_of_the_extending_page_bounces(extending):
     assert np.count_nonzero(np.diff(deep.astype(int)) == 1) == 4
 
 
-RELAXING = tomllib.loads(
-    re.search(
-        r"```toml\n(mode = .*?)```", (DOCS / "extending.md").read_text(encoding="utf-8"), re.S
-    )[1]
-)
+EXTENDING = (DOCS / "extending.md").read_text(encoding="utf-8")
+RELAXING = tomllib.loads(re.search(r"```toml\n(mode = .*?)```", EXTENDING, re.S)[1])
 SOFT = {
     "tip": {"shape": "paraboloid", "radius": "1 um"},
     "sample": {"model": "standard-linear-solid", "E0": "2 MPa", "E_inf": "0.5 MPa",
@@ -214,12 +215,12 @@ def test_results_of_the_extending_page_are_saved_exported_and_drawn(extending, t
     assert force.get_ylabel() == "Force on the tip (nN)"
     assert radius.get_ylabel() == "Contact radius (nm)"
     assert force.lines[-2].get_ydata()[-1] == pytest.approx(1e9 * float(result.force_held))
-    assert "force_held" in observables(result).columns[0].cells
+    assert "force_held" in list_observables(result).columns[0].cells
 
 
 def test_the_mode_of_the_extending_page_is_swept(extending, relaxing):
     what = {"vary": {"motion.depth": ["1 nm", "3 nm"]}}
-    campaign = campaign_of(relaxing, Path(), table_of(what), from_file=True)
+    campaign = make_campaign(relaxing, Path(), read_table(what), from_file=True)
     found = [campaign.run(point)["force_held"] for point in campaign.points([range(2)])]
     assert campaign.observables[0].unit == "N"
     assert found[1] > 2 * found[0] > 0
@@ -227,18 +228,43 @@ def test_the_mode_of_the_extending_page_is_swept(extending, relaxing):
 
 def test_the_page_knows_the_mode_of_the_extending_page(extending, relaxing, monkeypatch):
     pytest.importorskip("bokeh")
-    from softafm.app.curves import Shown, figures
-    from softafm.app.form import section
+    from softafm.app.curves import Shown, draw_figures
+    from softafm.app.form import describe_section
 
-    fields = section("motion", None, "stress-relaxation").fields
+    fields = describe_section("motion", None, "stress-relaxation").fields
     assert list(fields) == ["start", "depth", "speed", "duration"]
     assert fields["depth"].help == "Depth below the flat surface, m."
     assert (fields["speed"].unit, fields["speed"].default) == ("m/s", "1 µm/s")
-    assert "Time" in figures([Shown("held", "#000000", extending.relaxation)], "light")
+    assert "Time" in draw_figures([Shown("held", "#000000", extending.relaxation)], "light")
     monkeypatch.setitem(sys.modules, "extending_example", extending)
     names: dict = {}
     exec(python_lines(relaxing, Path()), names)
     xr.testing.assert_equal(names["result"], experiment_from(relaxing, Path()).run())
+
+
+def test_the_mode_of_the_extending_page_becomes_one_of_the_program_by_a_file_and_a_line(tmp_path):
+    package = tmp_path / "softafm"
+    shutil.copytree(PACKAGE, package, ignore=shutil.ignore_patterns("__pycache__"))
+    describe_section = EXTENDING.split("\n## A mode\n")[1].split("\n## ")[0]
+    *blocks, _ = re.findall(r"```python\n(.*?)```", describe_section, re.S)
+    (package / "modes" / "stress_relaxation.py").write_text("\n".join(blocks), encoding="utf-8")
+    table = package / "modes" / "__init__.py"
+    lines = table.read_text(encoding="utf-8").replace(
+        "import approach,", "import stress_relaxation, approach,"
+    )
+    table.write_text(f"{lines}register(stress_relaxation.MODE)\n", encoding="utf-8")
+    file = tmp_path / "relaxation.toml"
+    file.write_text(
+        "\n".join(f"{key} = {_inline(value)}" for key, value in {**SOFT, **RELAXING}.items()),
+        encoding="utf-8",
+    )
+    done = subprocess.run(
+        [sys.executable, "-m", "softafm", "info", str(file)],
+        cwd=tmp_path, env={**os.environ, "PYTHONPATH": str(tmp_path)}, capture_output=True,
+        text=True, check=False,
+    )  # fmt: skip
+    assert (done.returncode, done.stderr) == (0, "")
+    assert done.stdout.startswith("stress-relaxation, before any run")
 
 
 @pytest.mark.parametrize(
@@ -348,9 +374,11 @@ COMMAND_LINE = (DOCS / "command-line.md").read_text(encoding="utf-8")
 @pytest.mark.parametrize("table", [table for table in schema.CHOICES if table != "solver"])
 def test_the_command_line_page_lists_every_choice_with_its_keys(table):
     chooser, choices = schema.CHOICES[table]
-    section = COMMAND_LINE.split(f"| `{chooser}` | keys |\n|---|---|\n")[1].split("\n\n")[0]
+    describe_section = COMMAND_LINE.split(f"| `{chooser}` | keys |\n|---|---|\n")[1].split("\n\n")[
+        0
+    ]
     listed = {}
-    for row in section.splitlines():
+    for row in describe_section.splitlines():
         names, keys = row.strip("| ").split(" | ")
         without_columns = re.sub(r"with columns such as `[^`]*`", "", keys)
         for name in re.findall(r"`([^`]+)`", names):

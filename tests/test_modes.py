@@ -3,9 +3,9 @@
 import ast
 import json
 import re
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, make_dataclass, replace
 from pathlib import Path
-from typing import Annotated, ClassVar
+from typing import Annotated, ClassVar, Literal
 
 import numpy as np
 import pytest
@@ -16,10 +16,11 @@ import softafm as sa
 from softafm import modes
 from softafm.checks.refusals import ConfigError
 from softafm.draw.results import plot
+from softafm.experiment import schema
 from softafm.experiment.config import experiment_from
 from softafm.experiment.regime import expected_seconds, rows
 from softafm.modes.start import solver_of
-from softafm.sweeps.reading import campaign_of, table_of
+from softafm.sweeps.reading import make_campaign, read_table
 from softafm.units.quantities import LENGTH, SPEED
 
 PACKAGE = Path(sa.__file__).parent
@@ -103,7 +104,7 @@ LOADS = modes.Mode(
     },
     simulate=press_to_all,
     axes=modes.Axes(("depth",), lambda asked: (asked.depths,), ("deepest", "count")),
-    tables={"ramp": Ramp},
+    list_tables={"ramp": Ramp},
     scales=lambda inputs, result: modes.Scales({"N": 1e-9}),
     foresee=lambda inputs: modes.Foreseen(
         sa.Triangle(5e-9, -inputs.motion.deepest, 1e-6), inputs.motion.count, "ramp"
@@ -173,7 +174,7 @@ def test_its_result_is_checked_saved_exported_and_drawn(tmp_path):
 
 def test_its_sweep_keeps_the_coordinate_and_cannot_vary_it(loads):
     what = {"vary": {"sample.E": ["1 MPa", "2 MPa"], "ramp.speed": ["1 um/s"]}}
-    campaign = campaign_of(FILE, Path(), table_of(what), from_file=True)
+    campaign = make_campaign(FILE, Path(), read_table(what), from_file=True)
     (load,) = campaign.observables
     assert (load.name, load.unit, load.dimensions, load.shape) == (
         "largest_load",
@@ -183,16 +184,16 @@ def test_its_sweep_keeps_the_coordinate_and_cannot_vary_it(loads):
     )
     assert campaign.coordinates["depth"][1].tolist() == Depths(300e-9, 3).depths.tolist()
     with pytest.raises(ConfigError, match=r"motion.count'.* lie over depth already"):
-        campaign_of(FILE, Path(), table_of({"vary": {"motion.count": [2, 3]}}), from_file=True)
+        make_campaign(FILE, Path(), read_table({"vary": {"motion.count": [2, 3]}}), from_file=True)
 
 
 def test_the_page_draws_it_and_offers_no_movie(loads):
     pytest.importorskip("bokeh")
-    from softafm.app.curves import Shown, figures
+    from softafm.app.curves import Shown, draw_figures
 
     result = load_curve(SOFT, 300e-9, 3)
-    assert list(figures([Shown("loads", "#000000", result)], "light")) == [
-        "Largest force at a depth"
+    assert list(draw_figures([Shown("loads", "#000000", result)], "light")) == [
+        "Depth below the flat surface"
     ]
     with pytest.raises(ConfigError, match=r"^run.profiles = True: of no use with mode = 'load-c"):
         experiment_from({**FILE, "run": {"profiles": True}}, Path())
@@ -200,11 +201,11 @@ def test_the_page_draws_it_and_offers_no_movie(loads):
 
 @pytest.mark.usefixtures("loads")
 def test_its_further_table_is_asked_for_and_refused_in_a_line():
-    from softafm.app.form import section, tables
+    from softafm.app.form import describe_section, list_tables
     from softafm.app.python_lines import python_lines
 
-    assert tables("load-curve")[4:] == ("ramp", "solver", "run")
-    (speed,) = section("ramp", None, "load-curve").fields.values()
+    assert list_tables("load-curve")[4:] == ("ramp", "solver", "run")
+    (speed,) = describe_section("ramp", None, "load-curve").fields.values()
     assert (speed.unit, speed.default, speed.help) == ("m/s", "1 µm/s", "Speed of the tip, m/s.")
     assert "ramp=Ramp(speed=2e-6)" in python_lines(FILE, Path())
     assert "from test_modes import Ramp" in python_lines(FILE, Path())
@@ -235,6 +236,7 @@ def test_results_of_a_mode_that_is_not_registered_are_refused(tmp_path):
         ({"observe": press_to_all}, "mode 'load-curve': must have either observe or simulate"),
         ({"simulate": None}, "mode 'load-curve': must have either observe or simulate"),
         ({"motions": {}}, "mode 'load-curve': motions is empty"),
+        ({"motions": {"sine": sa.Sine}}, "mode 'load-curve': load_curve has no argument mean_heig"),
         ({"lever": "soft"}, "mode 'load-curve': lever = 'soft': must be '' or 'stiffness' or"),
     ],
 )
@@ -244,10 +246,50 @@ def test_a_record_that_does_not_fit_is_refused(change, line):
 
 
 def test_a_name_means_the_same_in_all_results():
-    stolen = replace(LOADS, observables={"force": modes.Observable("Hz", "frequency shift")})
+    stolen = replace(
+        LOADS, axes=modes.Axes(), observables={"force": modes.Observable("Hz", "frequency shift")}
+    )
     with modes_restored(), pytest.raises(ValueError, match=r"'force' of mode 'load-curve': this"):
         modes.register(stolen)
     assert "load-curve" not in modes.MODES
+
+
+@pytest.mark.parametrize(
+    ("field", "written", "value"),
+    [
+        (Annotated[float, LENGTH], "3 nm", 3e-9),
+        (Annotated[float, LENGTH] | None, "3 nm", 3e-9),
+        (Annotated[tuple[float, ...], LENGTH], ["1 nm", "3 nm"], (1e-9, 3e-9)),
+        (tuple[float, ...] | None, [0.5, 2.0], (0.5, 2.0)),
+        (float | None, 0.5, 0.5),
+        (Literal["tip", "base"], "base", "base"),
+        (int, 3, 3),
+        (bool, True, True),
+    ],
+)
+def test_fields_of_a_dataclass_are_written_by_their_types(field, written, value):
+    made = make_dataclass("Made", [("field", field)], namespace={"kind": "made"}, frozen=True)
+    assert (
+        schema.built("made", {"field": written}, schema.read_table(made), folder=Path()).field
+        == value
+    )
+    with pytest.raises(ConfigError, match=r"^made\.field = \{\}: must be "):
+        schema.built("made", {"field": {}}, schema.read_table(made), folder=Path())
+
+
+def test_a_dimension_needs_a_meaning():
+    over = replace(LOADS, axes=modes.Axes(("place",)))
+    with modes_restored(), pytest.raises(ValueError, match="the dimension place must be among the"):
+        modes.register(over)
+
+
+def test_what_is_observed_is_what_the_record_says():
+    mode = modes.MODES["force-distance"]
+    odd = replace(mode, name="odd", observe=lambda contact, motion, history: {"force_max": 1.0})
+    with modes_restored():
+        modes.register(odd)
+        with pytest.raises(ValueError, match=r"^mode 'odd': observe returns force_max, but the ob"):
+            modes.perform(odd, SOFT, sa.Triangle(5e-9, -1e-9, 1e-6))
 
 
 def test_a_motion_that_no_file_can_describe_is_refused():
@@ -256,7 +298,10 @@ def test_a_motion_that_no_file_can_describe_is_refused():
         kind: ClassVar[str] = "odd"
         phase: complex
 
-    odd = replace(LOADS, motions={"odd": Odd})
+    def odd_curve(contact, phase):
+        raise AssertionError("it was to be refused before any run")
+
+    odd = replace(LOADS, function=odd_curve, motions={"odd": Odd})
     with modes_restored():
         modes.register(odd)
         with pytest.raises(ValueError, match=r"field phase: .*complex.* cannot be written"):
