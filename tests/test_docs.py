@@ -2,7 +2,10 @@
 
 import importlib.util
 import json
+import os
 import re
+import shutil
+import subprocess
 import sys
 import tomllib
 from dataclasses import replace
@@ -24,6 +27,7 @@ from softafm.experiment.regime import rows
 from softafm.sweeps.reading import campaign_of, table_of
 
 DOCS = Path(__file__).parents[1] / "docs"
+PACKAGE = Path(sa.__file__).parent
 
 
 def example_module(page, folder):
@@ -148,11 +152,8 @@ def test_the_motion_of_the_extending_page_bounces(extending):
     assert np.count_nonzero(np.diff(deep.astype(int)) == 1) == 4
 
 
-RELAXING = tomllib.loads(
-    re.search(
-        r"```toml\n(mode = .*?)```", (DOCS / "extending.md").read_text(encoding="utf-8"), re.S
-    )[1]
-)
+EXTENDING = (DOCS / "extending.md").read_text(encoding="utf-8")
+RELAXING = tomllib.loads(re.search(r"```toml\n(mode = .*?)```", EXTENDING, re.S)[1])
 SOFT = {
     "tip": {"shape": "paraboloid", "radius": "1 um"},
     "sample": {"model": "standard-linear-solid", "E0": "2 MPa", "E_inf": "0.5 MPa",
@@ -238,6 +239,31 @@ def test_the_page_knows_the_mode_of_the_extending_page(extending, relaxing, monk
     names: dict = {}
     exec(python_lines(relaxing, Path()), names)
     xr.testing.assert_equal(names["result"], experiment_from(relaxing, Path()).run())
+
+
+def test_the_mode_of_the_extending_page_becomes_one_of_the_program_by_a_file_and_a_line(tmp_path):
+    package = tmp_path / "softafm"
+    shutil.copytree(PACKAGE, package, ignore=shutil.ignore_patterns("__pycache__"))
+    section = EXTENDING.split("\n## A mode\n")[1].split("\n## ")[0]
+    *blocks, _ = re.findall(r"```python\n(.*?)```", section, re.S)
+    (package / "modes" / "stress_relaxation.py").write_text("\n".join(blocks), encoding="utf-8")
+    table = package / "modes" / "__init__.py"
+    lines = table.read_text(encoding="utf-8").replace(
+        "import approach,", "import stress_relaxation, approach,"
+    )
+    table.write_text(f"{lines}register(stress_relaxation.MODE)\n", encoding="utf-8")
+    file = tmp_path / "relaxation.toml"
+    file.write_text(
+        "\n".join(f"{key} = {_inline(value)}" for key, value in {**SOFT, **RELAXING}.items()),
+        encoding="utf-8",
+    )
+    done = subprocess.run(
+        [sys.executable, "-m", "softafm", "info", str(file)],
+        cwd=tmp_path, env={**os.environ, "PYTHONPATH": str(tmp_path)}, capture_output=True,
+        text=True, check=False,
+    )  # fmt: skip
+    assert (done.returncode, done.stderr) == (0, "")
+    assert done.stdout.startswith("stress-relaxation, before any run")
 
 
 @pytest.mark.parametrize(

@@ -77,10 +77,10 @@ def perform(
     """
     if MODES.get(mode.name) is not mode:
         raise ValueError(f"mode '{mode.name}' is not known: call softafm.modes.register with it")
-    if mode.lever:
-        refuse_other_than_cantilever(cantilever)
     finer = finer_run(check, solver, tolerance)
     given, contact = contact, regularise_contact(contact, regularise)
+    if mode.lever:
+        refuse_other_than_cantilever(cantilever)
     inputs = Inputs(contact, motion, cantilever, tables)
     found = simulate(mode, inputs, Settings(solver, tolerance, profiles, progress))
     result = dataset(mode.name, contact, *found)
