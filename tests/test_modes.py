@@ -192,7 +192,7 @@ def test_the_page_draws_it_and_offers_no_movie(loads):
 
     result = load_curve(SOFT, 300e-9, 3)
     assert list(figures([Shown("loads", "#000000", result)], "light")) == [
-        "Largest force at a depth"
+        "Depth below the flat surface"
     ]
     with pytest.raises(ConfigError, match=r"^run.profiles = True: of no use with mode = 'load-c"):
         experiment_from({**FILE, "run": {"profiles": True}}, Path())
@@ -235,6 +235,7 @@ def test_results_of_a_mode_that_is_not_registered_are_refused(tmp_path):
         ({"observe": press_to_all}, "mode 'load-curve': must have either observe or simulate"),
         ({"simulate": None}, "mode 'load-curve': must have either observe or simulate"),
         ({"motions": {}}, "mode 'load-curve': motions is empty"),
+        ({"motions": {"sine": sa.Sine}}, "mode 'load-curve': load_curve has no argument mean_heig"),
         ({"lever": "soft"}, "mode 'load-curve': lever = 'soft': must be '' or 'stiffness' or"),
     ],
 )
@@ -244,10 +245,27 @@ def test_a_record_that_does_not_fit_is_refused(change, line):
 
 
 def test_a_name_means_the_same_in_all_results():
-    stolen = replace(LOADS, observables={"force": modes.Observable("Hz", "frequency shift")})
+    stolen = replace(
+        LOADS, axes=modes.Axes(), observables={"force": modes.Observable("Hz", "frequency shift")}
+    )
     with modes_restored(), pytest.raises(ValueError, match=r"'force' of mode 'load-curve': this"):
         modes.register(stolen)
     assert "load-curve" not in modes.MODES
+
+
+def test_a_dimension_needs_a_meaning():
+    over = replace(LOADS, axes=modes.Axes(("place",)))
+    with modes_restored(), pytest.raises(ValueError, match="the dimension place must be among the"):
+        modes.register(over)
+
+
+def test_what_is_observed_is_what_the_record_says():
+    mode = modes.MODES["force-distance"]
+    odd = replace(mode, name="odd", observe=lambda contact, motion, history: {"force_max": 1.0})
+    with modes_restored():
+        modes.register(odd)
+        with pytest.raises(ValueError, match=r"^mode 'odd': observe returns force_max, but the ob"):
+            modes.perform(odd, SOFT, sa.Triangle(5e-9, -1e-9, 1e-6))
 
 
 def test_a_motion_that_no_file_can_describe_is_refused():
@@ -256,7 +274,10 @@ def test_a_motion_that_no_file_can_describe_is_refused():
         kind: ClassVar[str] = "odd"
         phase: complex
 
-    odd = replace(LOADS, motions={"odd": Odd})
+    def odd_curve(contact, phase):
+        raise AssertionError("it was to be refused before any run")
+
+    odd = replace(LOADS, function=odd_curve, motions={"odd": Odd})
     with modes_restored():
         modes.register(odd)
         with pytest.raises(ValueError, match=r"field phase: .*complex.* cannot be written"):

@@ -8,7 +8,7 @@ import xarray as xr
 
 import softafm as sa
 from softafm.draw.approach_data import jumps_of
-from softafm.modes.approach import deepest_tap, drive_of
+from softafm.modes.driven import deepest_tap, drive_of
 
 
 @pytest.fixture(autouse=True)

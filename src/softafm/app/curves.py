@@ -104,14 +104,16 @@ def figures(shown: Sequence[Shown], theme: Theme) -> dict[str, LayoutDOM]:
 
 
 def _tabs(results: Sequence["Dataset"]) -> dict[str, tuple[str, tuple[str, ...]]]:
-    """Return the tabs, with those for what the figures of modes show beyond the usual ones."""
-    tabs = dict(TABS)
-    known = {(abscissa, ordinate) for abscissa, several in TABS.values() for ordinate in several}
+    """Return the tabs, with what the figures of modes show beyond the usual."""
+    found = dict(TABS)
+    titles = {abscissa: title for title, (abscissa, _) in reversed(TABS.items())}
     for result in results:
         for abscissa, ordinate in panels_of(result):
-            if (abscissa, ordinate) not in known and {abscissa, ordinate} <= set(result.variables):
-                tabs[axis_of(ordinate)[0]] = (abscissa, (ordinate,))
-    return tabs
+            title = titles.setdefault(abscissa, axis_of(abscissa)[0])
+            before = found.get(title, (abscissa, ()))[1]
+            if ordinate not in before and {abscissa, ordinate} <= set(result.variables):
+                found[title] = abscissa, (*before, ordinate)
+    return found
 
 
 def _units(parts: Sequence[Parts]) -> dict[str, tuple[float, str]]:

@@ -141,7 +141,8 @@ def _name(thing: Any) -> str:
     """Return what a class or function is called, by a name of ``softafm`` if it has one."""
     name = thing.__name__
     homes = {"sa": sa, "sa.solvers": sa.solvers}
-    return next((f"{h}.{name}" for h, home in homes.items() if hasattr(home, name)), name)
+    own = (f"{short}.{name}" for short, home in homes.items() if getattr(home, name, None) is thing)
+    return next(own, name)
 
 
 def _arguments(thing: Any) -> list[str]:

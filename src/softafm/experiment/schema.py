@@ -74,7 +74,7 @@ from softafm.files.measured import read_base_trajectory, read_trajectory
 from softafm.instrument.cantilever import Cantilever
 from softafm.instrument.motions import Sine, Trajectory, Triangle
 from softafm.modes import Mode
-from softafm.modes.approach import AmplitudeSweep
+from softafm.modes.driven import AmplitudeSweep
 from softafm.rheology import (
     Elastic,
     FractionalStandardLinearSolid,

@@ -7,7 +7,7 @@ from softafm.checks.kinds import refuse_other
 from softafm.checks.validate import finite, one_of, positive
 from softafm.instrument.cantilever import Cantilever
 from softafm.instrument.motions import Sine, Trajectory, Triangle
-from softafm.modes.approach import drive_of
+from softafm.modes.driven import drive_of
 from softafm.modes.start import refuse_other_than_cantilever
 
 

@@ -16,7 +16,7 @@ from softafm.errors import AccuracyWarning, DivergedError
 from softafm.instrument.motions import Sine
 from softafm.instrument.oscillator import Drive
 from softafm.modes.amplitude_curve import AmplitudeCurve
-from softafm.modes.approach import doubt_sine
+from softafm.modes.driven import doubt_sine
 from softafm.modes.tap_map import OBSERVABLES, TapMap
 from softafm.modes.tapping import observe_taps
 

@@ -18,7 +18,8 @@ from softafm.checks.validate import tolerance_of
 from softafm.errors import AccuracyWarning, DivergedError
 from softafm.maps.imaging import AmplitudeModulation
 from softafm.maps.setpoint import ATTRACTIVE, REPULSIVE, Lost, Point, Setpoint
-from softafm.modes.approach import approach_curve, drive_of
+from softafm.modes.approach import approach_curve
+from softafm.modes.driven import drive_of
 from softafm.modes.tap_map import OBSERVABLES
 
 NAMES = ("mean_height", "phase", "branch", *OBSERVABLES)

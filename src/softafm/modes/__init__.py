@@ -1,7 +1,8 @@
 """The modes of an AFM, one a file; the table lists them in the order in which they are offered."""
 
 from softafm.modes import approach, force_distance, spectroscopy, tapping
-from softafm.modes.mode import MODES, Axes, Foreseen, Inputs, Layout, Mode, Row, register
+from softafm.modes.mode import MODES, Mode, register
+from softafm.modes.parts import Axes, Foreseen, Inputs, Layout, Row
 from softafm.modes.perform import Outcome, Settings, perform
 from softafm.modes.scales import Scales
 from softafm.results.content import Observable, observables

@@ -5,21 +5,22 @@ Rajabifar et al. 2021, equations (29) to (32), and their general form off resona
 
 import json
 from collections.abc import Iterator
-from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any
+from dataclasses import replace
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from softafm.checks.callers import warn_caller
 from softafm.checks.gathering import Placed, collect_warnings, gather
-from softafm.checks.validate import finite, positive, refuse_masked, tolerance_of
+from softafm.checks.validate import positive, tolerance_of
 from softafm.contact import Contact
 from softafm.errors import AccuracyWarning
 from softafm.instrument.cantilever import Cantilever
 from softafm.instrument.motions import Sine
-from softafm.instrument.oscillator import Drive
 from softafm.modes.amplitude_curve import BRANCHES, AmplitudeCurve, Solutions
-from softafm.modes.mode import Axes, Foreseen, Inputs, Mode, Row
+from softafm.modes.driven import AmplitudeSweep, deepest_tap, doubt_sine, drive_of, ratios_of
+from softafm.modes.mode import Mode
+from softafm.modes.parts import Axes, Foreseen, Inputs, Row
 from softafm.modes.perform import Outcome, Settings, perform
 from softafm.modes.scales import Scales, tap_scales
 from softafm.modes.start import refuse_tapped_flow, solver_of
@@ -35,8 +36,6 @@ if TYPE_CHECKING:
 _HEIGHTS, _CHECKS = 241, 6
 _TAPS = 130
 """How many taps an approach curve takes, by experience."""
-_SINE = 0.02
-"""Second harmonic over the first up to which the tip moves as a sine."""
 
 
 def approach_curve(
@@ -99,21 +98,12 @@ def approach_curve(
     )  # fmt: skip
 
 
-@dataclass(frozen=True)
-class AmplitudeSweep:
-    """What ``approach_curve`` takes besides contact and cantilever."""
-
-    free_amplitude: float
-    amplitude_ratio: Any
-    drive_frequency: float | None = None
-
-
 def _simulate(inputs: Inputs, settings: Settings) -> Outcome:
     """Sample taps, and find the solutions and the sweep of the height on them."""
     contact, sweep = inputs.contact, inputs.motion
     tolerance, solver = tolerance_of(settings.tolerance), solver_of(settings.solver)
     refuse_tapped_flow(contact)
-    ratios = _ratios(sweep.amplitude_ratio)
+    ratios = ratios_of(sweep.amplitude_ratio)
     free_amplitude = positive("free_amplitude", sweep.free_amplitude, "m")
     drive, frequency = drive_of(inputs.cantilever, free_amplitude, sweep.drive_frequency)
 
@@ -152,56 +142,6 @@ def _simulate(inputs: Inputs, settings: Settings) -> Outcome:
     parts = {**inputs.parts, "motion": motion}
     data, coordinates = _tables(curve, ratios, found)
     return Outcome(parts, solver, tolerance, data, coordinates, tuple(warned), {"taps": taps.taps})
-
-
-def drive_of(cantilever: Cantilever, free_amplitude, drive_frequency=None) -> tuple[Drive, float]:
-    """Return the drive of a lever and its frequency, Hz; ValueError if it cannot be driven."""
-    quality, resonance = cantilever.quality_factor, cantilever.frequency
-    if quality is None or resonance is None:
-        name = "quality_factor" if quality is None else "frequency"
-        raise ValueError(f"cantilever.{name} = None: must be given for an approach curve")
-    frequency = resonance
-    if drive_frequency is not None:
-        frequency = positive("drive_frequency", drive_frequency, "Hz")
-    return Drive(cantilever.stiffness, quality, frequency / resonance, free_amplitude), frequency
-
-
-def deepest_tap(contact: Contact, drive: Drive, frequency: float, amplitudes) -> Sine:
-    """Estimate which tap of several amplitudes, m, indents most, before any run.
-
-    A brief contact has V = −A F with the mean force F, at most half of what the drive can push
-    against. F is that of Hertz, δ^1.5, over a parabola in time about the depth δ:
-    F = δ² √(2R/A)/(4 c) with the relaxed compliance c. Attraction, which adds to δ, is left out.
-    """
-    amplitudes = np.asarray(amplitudes, float)
-    mean_force = drive.strongest_push(amplitudes) / 2
-    compliance = contact.sample.reduced_compliance.relaxed
-    depth = np.sqrt(
-        4 * compliance * mean_force / np.sqrt(2 * contact.effective_radius / amplitudes)
-    )
-    deepest = depth.argmax()
-    amplitude = float(amplitudes[deepest])
-    return Sine(amplitude - float(depth[deepest]), amplitude, frequency, "steady")
-
-
-def doubt_sine(drive: Drive, amplitude, virial, dissipation) -> AccuracyWarning | None:
-    """Return what to warn of where a lever would not move as a sine, or nothing.
-
-    Amplitudes, m, virials and dissipations, J, of solutions: arrays of one shape, or numbers.
-    """
-    shares = np.atleast_1d(drive.second_harmonic(amplitude, virial, dissipation))
-    worst = int(shares.argmax())
-    if shares[worst] <= _SINE:
-        return None
-    off = readable(float(shares[worst] * np.atleast_1d(amplitude)[worst]), "m")
-    text = (
-        f"the lever does not move as the sine that is assumed: its second harmonic is {off}, "
-        f"{shares[worst]:.2g} of the amplitude, at quality_factor = {drive.quality_factor:g} and "
-        f"{drive.detuning:.3g} times the resonance frequency; heights are off by about as much, "
-        "and forces and energies with them; take a lever of a higher quality factor, a drive "
-        "nearer to resonance or amplitudes nearer to the free one"
-    )
-    return AccuracyWarning(text, float(shares[worst]))
 
 
 def _where(tap: tuple[float, float]) -> str:
@@ -272,27 +212,10 @@ def _tables(curve: AmplitudeCurve, ratios, found: Solutions):
     return data, coordinates
 
 
-def _ratios(values) -> np.ndarray:
-    """Return amplitude ratios as an array, or raise ValueError naming the one that is not."""
-    refuse_masked("amplitude_ratio", values)
-    try:
-        if isinstance(values, str | bytes):
-            raise TypeError
-        array = np.atleast_1d(np.asarray(values, float))
-    except (TypeError, ValueError):
-        raise ValueError(f"amplitude_ratio = {values!r}: must be a list of numbers") from None
-    if array.ndim != 1 or array.size == 0:
-        raise ValueError(f"amplitude_ratio has shape {array.shape}: must be a list of numbers")
-    for i, value in enumerate(array):
-        if not 0 < finite(f"amplitude_ratio[{i}]", value, "") < 1:
-            raise ValueError(f"amplitude_ratio[{i}] = {value:g}: must be above 0 and below 1")
-    return array
-
-
 def _scale(inputs: Inputs, result: "Dataset") -> Scales:
     """Return the scales of taps of all amplitudes; heights count by the reach of the contact."""
     contact, sweep = inputs.contact, inputs.motion
-    amplitudes = _ratios(sweep.amplitude_ratio) * sweep.free_amplitude
+    amplitudes = ratios_of(sweep.amplitude_ratio) * sweep.free_amplitude
     frequency = json.loads(result.attrs["experiment"])["motion"]["drive_frequency"]
     scales = tap_scales(contact, amplitudes, frequency, result)
     return replace(scales, fixed={**scales.fixed, "mean_height": contact.reach})

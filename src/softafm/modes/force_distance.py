@@ -6,7 +6,8 @@ import numpy as np
 
 from softafm.contact import Contact
 from softafm.instrument.motions import Sine, Trajectory, Triangle
-from softafm.modes.mode import Layout, Mode
+from softafm.modes.mode import Mode
+from softafm.modes.parts import Layout
 from softafm.modes.perform import perform
 from softafm.progress import Progress
 from softafm.results.content import RAMPED, observables

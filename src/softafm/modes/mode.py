@@ -1,16 +1,16 @@
 """A mode of an AFM: one record, which files, sweeps, figures and the page look up."""
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, fields
 from functools import cached_property
 from inspect import Parameter, signature
-from types import MappingProxyType
-from typing import TYPE_CHECKING, Any, Literal, NamedTuple
+from typing import TYPE_CHECKING, Any, Literal
 
 from softafm.checks.suggestions import call_also
 from softafm.checks.validate import one_of
+from softafm.modes.parts import Axes, Foreseen, Inputs, Layout
 from softafm.modes.scales import Scales, force_scales
-from softafm.results.content import HISTORY, Needed, Observable, declare
+from softafm.results.content import HISTORY, Needed, Observable, declare, unit_of
 
 if TYPE_CHECKING:
     from xarray import Dataset
@@ -21,97 +21,6 @@ if TYPE_CHECKING:
 
 Values = Mapping[str, Any]
 """Numbers and arrays by the names of a mode's observables."""
-
-
-class Inputs(NamedTuple):
-    """What a mode is applied to.
-
-    Attributes
-    ----------
-    contact, motion, cantilever
-        What touches, one of the mode's ``motions``, and the ``Cantilever`` if the mode needs one.
-    tables
-        What the further ``tables`` of the mode describe, by name.
-    """
-
-    contact: "Contact"
-    motion: Any
-    cantilever: Any = None
-    tables: Mapping[str, Any] = MappingProxyType({})
-
-    @property
-    def parts(self) -> dict[str, Any]:
-        """What takes part besides the contact, as results describe it."""
-        lever = {} if self.cantilever is None else {"cantilever": self.cantilever}
-        return {"motion": self.motion, **lever, **self.tables}
-
-
-class Row(NamedTuple):
-    """A line of ``softafm info``: a number with its unit, as text, and what it means."""
-
-    name: str
-    value: str
-    words: str
-
-
-class Foreseen(NamedTuple):
-    """What a run will be like, estimated before it.
-
-    Attributes
-    ----------
-    motion
-        The motion that goes deepest, of the tip, or of the base of its lever.
-    runs
-        How many such motions a run is worth.
-    noun
-        What such a motion is called.
-    depth
-        Where its lowest height comes from; "" if it is known.
-    rows
-        What else is worth knowing.
-    """
-
-    motion: Any
-    runs: int = 1
-    noun: str = "motion"
-    depth: str = ""
-    rows: tuple[Row, ...] = ()
-
-
-class Axes(NamedTuple):
-    """What the observables of a mode lie over, where a run gives arrays of them.
-
-    Attributes
-    ----------
-    dims
-        The dimensions.
-    values
-        Function of the motion that returns the coordinate along each of them.
-    keys
-        Keys of ``[motion]`` that make these coordinates, so that a sweep cannot vary them.
-    """
-
-    dims: tuple[str, ...] = ()
-    values: Callable[[Any], tuple[Any, ...]] = lambda motion: ()
-    keys: tuple[str, ...] = ()
-
-
-class Layout(NamedTuple):
-    """What is drawn of a result.
-
-    Attributes
-    ----------
-    panels
-        For each panel the variable along x, and the one along y.
-    cropped
-        Whether panels show only where there is a force.
-    title
-        Scalars to be told above, each with a name for it.
-    """
-
-    panels: tuple[tuple[str, str], ...] = (("time", "force"), ("tip_height", "force"))
-    cropped: bool = True
-    title: tuple[tuple[str, str], ...] = ()
 
 
 _NUMBERS, _HISTORY = Axes(), Layout()
@@ -171,8 +80,8 @@ class Mode:
     Raises
     ------
     ValueError
-        If neither or both of ``observe`` and ``simulate`` are given, there is no motion, or the
-        lever is none of these.
+        If neither or both of ``observe`` and ``simulate`` are given, there is no motion, the lever
+        is none of these, or the function lacks an argument for a field of a motion.
     """
 
     name: str
@@ -200,6 +109,13 @@ class Mode:
         one_of(f"mode '{self.name}': lever", self.lever, ("", "stiffness", "resonator"))
         if not self.motions:
             raise ValueError(f"mode '{self.name}': motions is empty; must hold at least one")
+        asked = () if self.takes_motion else self.motions.values()
+        for name in dict.fromkeys(each.name for motion in asked for each in fields(motion)):
+            if name not in self.parameters:
+                raise ValueError(
+                    f"mode '{self.name}': {self.function.__name__} has no argument {name}, which "
+                    "is a field of its motion; must have one, or take motion"
+                )
 
     @cached_property
     def parameters(self) -> tuple[str, ...]:
@@ -246,8 +162,15 @@ def register(mode: Mode) -> None:
     Raises
     ------
     ValueError
-        If the name of an observable means something else in results.
+        If the name of an observable means something else in results, or nothing says what a
+        dimension of the axes is.
     """
+    for name in mode.axes.dims:
+        if name not in mode.observables and unit_of(name) is None:
+            raise ValueError(
+                f"mode '{mode.name}': the dimension {name} must be among the observables, as "
+                f"Observable(unit, words, ('{name}',))"
+            )
     variables = {name: each.dims for name, each in mode.observables.items()}
     if mode.observe is not None:
         variables = HISTORY | variables

@@ -5,10 +5,12 @@ from functools import partial
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, NamedTuple
 
+from softafm.checks.refusals import all_of
 from softafm.contact import Contact
 from softafm.instrument.cantilever import Cantilever
 from softafm.modes.check import compare_with_finer, finer_run
-from softafm.modes.mode import MODES, Inputs, Mode
+from softafm.modes.mode import MODES, Mode
+from softafm.modes.parts import Inputs
 from softafm.modes.start import carry, refuse_other_than_cantilever, regularise_contact
 from softafm.progress import Progress
 from softafm.results.content import HISTORY
@@ -40,7 +42,7 @@ class Outcome(NamedTuple):
     data: dict[str, tuple]
     coordinates: dict[str, tuple]
     warnings: tuple[Warning, ...] = ()
-    diagnostics: Mapping[str, float] = {}
+    diagnostics: Mapping[str, float] = MappingProxyType({})
 
 
 def perform(
@@ -101,10 +103,13 @@ def simulate(mode: Mode, inputs: Inputs, settings: Settings) -> Outcome:
     solver, tolerance, history = carry(contact, mode.path(motion), *settings, **lever)
     data, coordinates = history_variables(contact, history)
     assert mode.observe is not None
-    observed = {
-        name: (mode.observables[name].dims, values)
-        for name, values in mode.observe(contact, motion, history).items()
-    }
+    values = mode.observe(contact, motion, history)
+    if values.keys() != mode.observables.keys():
+        raise ValueError(
+            f"mode '{mode.name}': observe returns {all_of(sorted(values))}, but the observables "
+            f"are {all_of(sorted(mode.observables))}"
+        )
+    observed = {name: (mode.observables[name].dims, each) for name, each in values.items()}
     data = {name: data[name] for name in HISTORY} | observed | data  # shapes of the surface last
     return Outcome(
         inputs.parts, solver, tolerance, data, coordinates, history.warnings, history.diagnostics

@@ -9,7 +9,7 @@ import numpy as np
 if TYPE_CHECKING:
     from xarray import Dataset
 
-    from softafm.modes.mode import Inputs
+    from softafm.modes.parts import Inputs
 
 _TAP = 0.02
 """Part of force times amplitude below which the energy of a tap counts as none."""

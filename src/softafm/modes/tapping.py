@@ -7,7 +7,8 @@ import numpy as np
 
 from softafm.contact import Contact
 from softafm.instrument.motions import Sine
-from softafm.modes.mode import Layout, Mode
+from softafm.modes.mode import Mode
+from softafm.modes.parts import Layout
 from softafm.modes.perform import perform
 from softafm.modes.scales import tap_scales
 from softafm.progress import Progress
