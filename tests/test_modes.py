@@ -3,9 +3,9 @@
 import ast
 import json
 import re
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, make_dataclass, replace
 from pathlib import Path
-from typing import Annotated, ClassVar
+from typing import Annotated, ClassVar, Literal
 
 import numpy as np
 import pytest
@@ -16,6 +16,7 @@ import softafm as sa
 from softafm import modes
 from softafm.checks.refusals import ConfigError
 from softafm.draw.results import plot
+from softafm.experiment import schema
 from softafm.experiment.config import experiment_from
 from softafm.experiment.regime import expected_seconds, rows
 from softafm.modes.start import solver_of
@@ -251,6 +252,29 @@ def test_a_name_means_the_same_in_all_results():
     with modes_restored(), pytest.raises(ValueError, match=r"'force' of mode 'load-curve': this"):
         modes.register(stolen)
     assert "load-curve" not in modes.MODES
+
+
+@pytest.mark.parametrize(
+    ("field", "written", "value"),
+    [
+        (Annotated[float, LENGTH], "3 nm", 3e-9),
+        (Annotated[float, LENGTH] | None, "3 nm", 3e-9),
+        (Annotated[tuple[float, ...], LENGTH], ["1 nm", "3 nm"], (1e-9, 3e-9)),
+        (tuple[float, ...] | None, [0.5, 2.0], (0.5, 2.0)),
+        (float | None, 0.5, 0.5),
+        (Literal["tip", "base"], "base", "base"),
+        (int, 3, 3),
+        (bool, True, True),
+    ],
+)
+def test_fields_of_a_dataclass_are_written_by_their_types(field, written, value):
+    made = make_dataclass("Made", [("field", field)], namespace={"kind": "made"}, frozen=True)
+    assert (
+        schema.built("made", {"field": written}, schema.table_of(made), folder=Path()).field
+        == value
+    )
+    with pytest.raises(ConfigError, match=r"^made\.field = \{\}: must be "):
+        schema.built("made", {"field": {}}, schema.table_of(made), folder=Path())
 
 
 def test_a_dimension_needs_a_meaning():

@@ -41,9 +41,10 @@ def _quantity(kind: units.Kind) -> tuple[Any, ...]:
     return _read(kind), Field(description=kind.valid), asked
 
 
-def quantity_of(kind: units.Kind) -> Any:
-    """Return the type that reads a quantity of a kind, written as text with its unit."""
-    return Annotated[float, *_quantity(kind)]
+def quantity_of(kind: units.Kind, *, listed: bool = False) -> Any:
+    """Return the type that reads a quantity of a kind as text with its unit, or a list of such."""
+    single = Annotated[float, *_quantity(kind)]
+    return Annotated[tuple[single, ...], *_quantities(kind)] if listed else single
 
 
 def _quantities(kind: units.Kind) -> tuple[Any, ...]:

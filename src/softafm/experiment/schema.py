@@ -9,6 +9,7 @@ from dataclasses import MISSING, fields
 from functools import cache
 from inspect import Parameter, signature
 from pathlib import Path
+from types import NoneType
 from typing import Annotated, Any, ClassVar, Literal, get_args, get_origin, get_type_hints
 
 import numpy as np
@@ -314,7 +315,7 @@ _WITH_UNIT = {"domain": Length}
 _PLAIN: dict[Any, Any] = {
     int: Whole,
     float: Number,
-    float | None: Number,
+    tuple[float, ...]: Numbers,
     bool: Flag,
     Stepper: choice_of(STEPPERS),
 }
@@ -343,16 +344,18 @@ def _written(name: str, declared: Any) -> Any:
     """Return the type of a key that is a field of a dataclass; ValueError if there is none."""
     if name in _WITH_UNIT:
         return _WITH_UNIT[name]
+    if NoneType in get_args(declared):
+        (declared,) = (each for each in get_args(declared) if each is not NoneType)
     for unit in getattr(declared, "__metadata__", ()):
         if isinstance(unit, Kind):
-            return quantity_of(unit)
+            return quantity_of(unit, listed=declared.__origin__ == tuple[float, ...])
     if get_origin(declared) is Literal:
         return choice_of({choice: choice for choice in get_args(declared)})
     if declared in _PLAIN:
         return _PLAIN[declared]
     raise ValueError(
-        f"field {name}: {declared} cannot be written in an experiment file; take Annotated[float, "
-        "LENGTH] or another Kind of softafm.units.quantities, or float, int, bool or a Literal"
+        f"field {name}: {declared} cannot be written in an experiment file; take float or "
+        "tuple[float, ...], Annotated with a Kind of softafm.units.quantities, int, bool or Literal"
     )
 
 

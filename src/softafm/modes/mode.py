@@ -40,9 +40,10 @@ class Mode:
         are those of ``force_distance``, ``profiles`` left out where no surface shapes are kept.
     motions
         What a ``[motion]`` table can describe, by its ``shape``, the default first: dataclasses
-        with a ``kind`` whose fields are the keys of the table. A field's unit is a ``Kind`` of
-        ``softafm.units.quantities``, ``Annotated[float, LENGTH]``; its help is its text in the
-        section ``Parameters`` of the docstring.
+        with a ``kind`` whose fields are the keys of the table: ``float`` or ``tuple[float, ...]``,
+        with a unit ``Annotated[float, LENGTH]`` by a ``Kind`` of ``softafm.units.quantities``,
+        ``int``, ``bool`` or ``Literal``, or one of these or None. The help of a field is its text
+        in the section ``Parameters`` of the docstring.
     observables
         What is observed, by name. A check compares, and a sweep keeps, those over ``axes.dims``.
     observe
