@@ -374,11 +374,9 @@ COMMAND_LINE = (DOCS / "command-line.md").read_text(encoding="utf-8")
 @pytest.mark.parametrize("table", [table for table in schema.CHOICES if table != "solver"])
 def test_the_command_line_page_lists_every_choice_with_its_keys(table):
     chooser, choices = schema.CHOICES[table]
-    describe_section = COMMAND_LINE.split(f"| `{chooser}` | keys |\n|---|---|\n")[1].split("\n\n")[
-        0
-    ]
+    section = COMMAND_LINE.split(f"| `{chooser}` | keys |\n|---|---|\n")[1].split("\n\n")[0]
     listed = {}
-    for row in describe_section.splitlines():
+    for row in section.splitlines():
         names, keys = row.strip("| ").split(" | ")
         without_columns = re.sub(r"with columns such as `[^`]*`", "", keys)
         for name in re.findall(r"`([^`]+)`", names):
