@@ -109,7 +109,7 @@ def test_a_bad_value_in_any_field_is_marked_with_its_reason_and_cannot_run(site,
             file.set_input_files({"name": "a.csv", "mimeType": "text/csv", "buffer": BAD.encode()})
         until(page, unmarked)
         assert page.locator("button.run").is_disabled()
-        assert "to mend before it can run" in page.locator(".words").inner_text()
+        assert "to correct before it can run" in page.locator(".words").inner_text()
     assert page.locator("img").count() == 0
 
 

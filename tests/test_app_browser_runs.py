@@ -218,7 +218,7 @@ def test_a_link_opens_the_same_form_for_someone_else(site, visit):
     [
         ("mode=tapping-cycle&mode=b", "the link has mode more than once"),
         ("nonsense", "the link cannot be read"),
-        ("tip.shape=<img src=x onerror=alert(1)>&odd.key=1", "to mend before it can run"),
+        ("tip.shape=<img src=x onerror=alert(1)>&odd.key=1", "to correct before it can run"),
     ],
 )
 def test_a_link_that_makes_no_sense_is_told_and_does_no_harm(site, visit, query, words):

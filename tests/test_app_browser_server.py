@@ -102,7 +102,7 @@ def test_what_is_too_much_is_refused_with_a_reason(site, visit, tmp_path):
         page.locator("button.run").click()
         page.locator(".run-done").nth(count).wait_for()
     page.locator("button.run").click()
-    page.locator(".words.bad", has_text="4 runs are listed, as many as may be").wait_for()
+    page.locator(".words.bad", has_text="4 runs are listed, the most allowed").wait_for()
     assert page.locator("img").count() == 0
 
 

@@ -210,7 +210,7 @@ def test_uploads_get_plain_names_that_are_not_taken(tmp_path):
         if with_room:
             keep(tmp_path, "more.csv", content, 100)
         else:
-            with pytest.raises(ValueError, match="one too many"):
+            with pytest.raises(ValueError, match="exceeds the total"):
                 keep(tmp_path, "more.csv", content, 100)
 
 

@@ -67,7 +67,7 @@ def test_shapes_are_kept_for_the_movie_without_a_change_of_the_form(page):
 def test_what_cannot_run_is_not_run(page):
     page.form.edit("sample.E0", "2")
     assert not page._bar.state["can_run"]
-    assert words(page) == ("1 value to mend before it can run", True)
+    assert words(page) == ("1 value to correct before it can run", True)
     page.answer({"run": True})
     assert page.session.entries == []
     page.form.edit("sample.E0", "2 GPa")
@@ -75,7 +75,7 @@ def test_what_cannot_run_is_not_run(page):
     page.limits = page.session._limits = Limits(listed=1)
     page.answer({"run": True})
     page.answer({"run": True})
-    assert words(page) == ("1 runs are listed, as many as may be: remove some first", True)
+    assert words(page) == ("1 runs are listed, the most allowed: remove some first", True)
 
 
 def test_files_are_opened(page, tap):

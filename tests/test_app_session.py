@@ -80,7 +80,7 @@ def test_what_is_too_much_is_refused(session, idle, tmp_path, tap):
         session.run(TAP, "tap", None)
     uploaded(session, "tap.nc", write_netcdf(tap))
     for more in (lambda: session.run(TAP, "tap", None), lambda: session.read("a.nc", b"")):
-        with pytest.raises(ValueError, match="3 runs are listed, as many as may be"):
+        with pytest.raises(ValueError, match="3 runs are listed, the most allowed"):
             more()
     other = Session(idle, tmp_path, Limits())
     assert make_row(other.run(TAP, "tap", None))["words"] == "waiting, number 2 in the queue"

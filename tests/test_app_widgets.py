@@ -303,7 +303,7 @@ def test_a_sum_a_flag_and_a_file_in_the_browser(opened, tmp_path):
     page.locator(".section-surface-parts-1").wait_for(state="detached")
     page.locator("summary").click()
     page.locator(".field-run-profiles input").check()
-    page.locator(".told", has_text="profiles").wait_for()
+    page.locator(".changed", has_text="profiles").wait_for()
     page.locator(".choice-tip").select_option("measured")
     (tmp_path / "tip.csv").write_text(TIP, encoding="utf-8")
     page.locator(".field-tip-file input").set_input_files(tmp_path / "tip.csv")

@@ -94,7 +94,7 @@ def test_a_file_of_a_campaign_is_read(tmp_path):
         ({"vary": {"tip.radius": ["9 nm"]}, "observables": []}, "sweep.observables = []: is emp"),
         (
             {"vary": {"tip.radius": ["9 nm"]}, "observables": ["virial", "virial"]},
-            "'virial' is there twice",
+            "'virial' is listed twice",
         ),
         (
             {"vary": {"sample.E_inf": ["1 GPa", "5 GPa"]}},

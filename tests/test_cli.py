@@ -197,7 +197,7 @@ def test_an_approach_curve_is_run_plotted_and_exported(folder, softafm):
     assert re.search(r"jump on retract +13\.\d+ nm", out)
     assert softafm("plot", "ps-approach-curve.nc")[0] == 0
     assert (folder / "ps-approach-curve.png").read_bytes().startswith(b"\x89PNG")
-    assert "holds no surface shapes" in refused(
+    assert "holds no surface profiles" in refused(
         softafm("plot", "ps-approach-curve.nc", "--profiles")
     )
     assert softafm("export", "ps-approach-curve.nc", "--out", "sweep.csv")[0] == 0

@@ -151,7 +151,7 @@ def test_a_list_is_drawn_from_in_a_sample():
             "'tip.radius, sample.E_inf': 'tip.radius' has 1, 'sample.E_inf' has 2 values",
         ),
         ({("tip.radius", "sample.E_inf"): [["1 nm"]]}, "has 1 lists for 2 fields"),
-        ({"tip.radius": ["1 nm"], ("tip.radius",): [1e-9]}, "'tip.radius': is there twice"),
+        ({"tip.radius": ["1 nm"], ("tip.radius",): [1e-9]}, "'tip.radius': is listed twice"),
         (
             {f"sample.{key}": {"from": 1, "to": 2, "points": 10**4} for key in ("E0", "E_inf")}
             | {"tip.radius": {"from": 1e-9, "to": 2e-9, "points": 10**4}},
@@ -173,11 +173,11 @@ def test_a_bad_grid_is_refused_in_one_line(vary, words):
         ({"kind": "sobol"}, "sweep.samples: missing"),
         ({"kind": "sobol", "samples": 0}, "sweep.samples = 0: must be a whole number"),
         ({"kind": "random", "samples": 10, "seed": -1}, "sweep.seed = -1"),
-        ({"samples": 10}, "sweep.samples = 10: of no use in a grid"),
+        ({"samples": 10}, "sweep.samples = 10: has no effect in a grid"),
         (
             {"vary": {"tip.radius": {"from": 1e-9, "to": 2e-9, "points": 3}}, "kind": "sobol",
              "samples": 10},
-            "'tip.radius'.points: of no use in a random design",
+            "'tip.radius'.points: has no effect in a random design",
         ),
     ],
 )  # fmt: skip

@@ -274,7 +274,7 @@ def test_info_run_and_result_state_the_misfit(experiment, softafm):
     sample = GeneralizedMaxwell.from_dma(*read_dma("dma.csv"), 0.49)
     largest, rms = sample.dma_misfit
     row = re.compile(
-        rf"fit off by +{100 * largest:.2g} % .*at most; {100 * rms:.2g} % in the mean square"
+        rf"fit off by +{100 * largest:.2g} % .*at most; {100 * rms:.2g} % root mean square"
     )
     for command in ("info", "run"):
         code, out, err = softafm(command, "rubber.toml")

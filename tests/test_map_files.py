@@ -340,7 +340,7 @@ def test_bad_files_are_refused_before_anything_starts(folder, softafm, override,
         ),
         (
             volume(PS, LDPE, pattern="share", file="broken.npy"),
-            "map.file = 'broken.npy': is no array that NumPy saved",
+            "map.file = 'broken.npy': is not an array that NumPy saved",
         ),
         (
             volume(PS, LDPE, pattern="share", file="missing.npy"),

@@ -34,12 +34,12 @@ def file(tmp_path):
         ("tip.radius=1 000 nm", "did you mean '1000 nm'?"),
         (
             "surface.law=JKR",
-            "surface.law = 'JKR': JKR is no law but the limit of a law with adhesion",
+            "surface.law = 'JKR': JKR is not a law but the limit of a law with adhesion",
         ),
         ("surface.law=DMT-JKR", "its closed form is in softafm.indentation; "),
         (
             "surface.law=hertz",
-            "Hertz is no law but the limit of a law without adhesion, 'repulsion'",
+            "Hertz is not a law but the limit of a law without adhesion, 'repulsion'",
         ),
     ],
 )

@@ -140,7 +140,7 @@ def test_one_process_writes_at_a_time(store):
     with store.writing():
         assert not (store.path / "one/0.0.part").exists()
         assert store.in_use
-        with pytest.raises(Busy, match="another process is at work"), Store(store.path).writing():
+        with pytest.raises(Busy, match="another process is using"), Store(store.path).writing():
             pass
     assert not store.in_use
 
@@ -154,7 +154,7 @@ def test_one_process_writes_at_a_time(store):
         ({"shape": (3, 8)}, "it had 3 of a × 7 of b, and now 3 of a × 8 of b"),
         (
             {"coordinates": {"a": (("a",), np.array([1.0, 2.0, 5.0]), {})}},
-            "the values of a were others",
+            "the values of a were different",
         ),
     ],
 )
@@ -165,12 +165,12 @@ def test_another_campaign_is_told_from_the_one_that_began_it(store, changes, wor
 
 def test_what_is_no_store_is_refused(tmp_path, store):
     (tmp_path / "folder").mkdir()
-    for path, words in (("none", "no such store"), ("folder", "is no store of a sweep")):
+    for path, words in (("none", "no such store"), ("folder", "is not the store of a sweep")):
         with pytest.raises(StoreError, match=f"{path}: {words}"):
             Store(tmp_path / path)
     attributes = {**store.attributes, "format": "another"}
     (store.path / ".zattrs").write_text(json.dumps(attributes), encoding="utf-8")
-    with pytest.raises(StoreError, match="is no store of a sweep"):
+    with pytest.raises(StoreError, match="is not the store of a sweep"):
         Store(store.path)
 
 
@@ -240,26 +240,30 @@ def test_a_store_is_loaded_as_xarray_reads_it(store):
             "'one' is kept in a way that softafm does",
         ),
         ("one/.zarray", {"compressor": {"id": "lzma"}}, "'one' is kept in a way that softafm does"),
-        ("one/.zarray", {"compressor": None}, "is no store of a sweep, or damaged"),
+        ("one/.zarray", {"compressor": None}, "is not the store of a sweep, or is damaged"),
         ("reason/.zarray", {"filters": [{"id": "pickle"}]}, "'reason' is kept in a way"),
         ("one/.zarray", {"dtype": "|V8"}, "'one' is kept in a way that softafm does not write"),
         ("one/.zarray", {"dtype": "<f4"}, "'one' is not of the type or shape of its runs"),
-        ("one/.zarray", {"dtype": 5}, "is no store of a sweep, or damaged"),
+        ("one/.zarray", {"dtype": 5}, "is not the store of a sweep, or is damaged"),
         ("one/.zarray", {"zarr_format": 3}, "'one' is kept in a way that softafm does not write"),
         ("one/.zarray", {"dimension_separator": "/"}, "'one' is kept in a way"),
         ("one/.zarray", {"shape": [3, -7]}, "'one' has the shape [3, -7] in [1, 4]"),
         ("one/.zarray", {"shape": [3, 7.0]}, "'one' has the shape [3, 7.0] in [1, 4]"),
         ("one/.zarray", {"chunks": [0, 4]}, "'one' has the shape [3, 7] in [0, 4]"),
         ("one/.zarray", {"shape": [3, 8]}, "'one' is not of the type or shape of its runs"),
-        ("state/.zarray", {"shape": [10**12, 7]}, "is of an absurd shape, [1000000000000, 7]"),
-        ("state/.zarray", {"shape": [0, 7]}, "is of an absurd shape, [0, 7]"),
-        ("state/.zarray", {"shape": [10**8, 7]}, "is of an absurd shape"),
+        ("state/.zarray", {"shape": [10**12, 7]}, "has an absurd shape, [1000000000000, 7]"),
+        ("state/.zarray", {"shape": [0, 7]}, "has an absurd shape, [0, 7]"),
+        ("state/.zarray", {"shape": [10**8, 7]}, "has an absurd shape"),
         ("state/.zarray", {"chunks": [10**6, 10**6]}, "has blocks of 1000000000000 runs"),
         ("one/.zattrs", {"units": "days since 1900-01-01"}, "has the unit 'days since 1900-01-01'"),
-        ("one/.zattrs", {"scale_factor": 2.0}, "'one' is described as softafm does not"),
-        ("one/.zattrs", {"units": 2.0}, "'one' is described as softafm does not"),
-        ("one/.zattrs", {"_ARRAY_DIMENSIONS": ["a"]}, "'one' is described as softafm does not"),
-        ("a/.zarray", {"chunks": [1]}, "its coordinate 'a' is in parts"),
+        ("one/.zattrs", {"scale_factor": 2.0}, "'one' is described in a way that softafm does not"),
+        ("one/.zattrs", {"units": 2.0}, "'one' is described in a way that softafm does not"),
+        (
+            "one/.zattrs",
+            {"_ARRAY_DIMENSIONS": ["a"]},
+            "'one' is described in a way that softafm does not",
+        ),
+        ("a/.zarray", {"chunks": [1]}, "its coordinate 'a' is split into parts"),
     ],
 )
 def test_what_no_sweep_writes_is_refused_before_it_is_used(store, softafm, name, values, words):
@@ -285,7 +289,9 @@ def test_what_no_sweep_writes_is_refused_before_it_is_used(store, softafm, name,
 def test_metadata_that_make_no_sense_are_refused(store, softafm, file, content):
     (store.path / file).write_text(content)
     for attempt in (load_sweep, read_status):
-        with pytest.raises(StoreError, match=r"s\.zarr: (is no store of a sweep|its campaign)"):
+        with pytest.raises(
+            StoreError, match=r"s\.zarr: (is not the store of a sweep|its campaign)"
+        ):
             attempt(store.path)
     code, out, said = softafm("sweep", "--status", store.path)
     assert (code, out, said.count("\n")) == (2, "", 1)

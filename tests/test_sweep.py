@@ -95,10 +95,10 @@ def test_a_store_is_opened_and_gone_on_with(tmp_path, monkeypatch):
 @pytest.mark.parametrize(
     ("options", "words"),
     [
-        ({}, "exists; choose another name, or add --resume to go on with it, or --force"),
+        ({}, "exists; choose another name, or add --resume to continue it, or --force"),
         ({"resume": True, "observables": ["sum"]}, "was begun by another campaign: observables is"),
         ({"resume": True, "vary": {"x": [1.0], "y": YS}}, "it had 7 of x × 20 of y, and now 1 of"),
-        ({"resume": True, "vary": {"x": XS, "y": YS[::-1]}}, "the values of y were others"),
+        ({"resume": True, "vary": {"x": XS, "y": YS[::-1]}}, "the values of y were different"),
         ({"resume": True, "what": lambda x, y: calm(x, y)}, "another campaign: function is"),
     ],
 )
@@ -114,7 +114,7 @@ def test_a_store_is_neither_overwritten_nor_mixed_up(tmp_path, options, words):
 def test_force_replaces_a_store_and_nothing_else(tmp_path):
     (tmp_path / "mine").mkdir()
     (tmp_path / "mine/letter").touch()
-    with pytest.raises(ValueError, match="mine: is no store of a sweep"):
+    with pytest.raises(ValueError, match="mine: is not the store of a sweep"):
         sa.sweep(calm, GRID, store=tmp_path / "mine", workers=0, force=True)
     assert (tmp_path / "mine/letter").exists()
     store = tmp_path / "s.zarr"

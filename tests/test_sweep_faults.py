@@ -158,7 +158,7 @@ def test_ctrl_c_says_in_one_line_how_to_go_on(folder, taps):
     out, err = process.communicate(timeout=60)
     assert (process.returncode, out) == (1, "")
     assert err == (
-        "softafm: interrupted; what is finished is in taps.zarr; --resume goes on with it\n"
+        "softafm: interrupted; finished runs are in taps.zarr; --resume continues the sweep\n"
     )
     assert 0 < read_status("taps.zarr").done < 180
     same(sa.sweep("taps.toml", workers=0, store="taps.zarr", resume=True).load(), taps)
@@ -259,8 +259,8 @@ def test_a_full_disk_is_told_in_one_line(folder, taps):
         said = subprocess.run(command, capture_output=True, text=True)
         assert (said.returncode, said.stdout) == (1, "")
         assert said.stderr == (
-            f"softafm: {store} could not be written: No space left on device; what is finished is "
-            f"in {store}; --resume goes on with it\n"
+            f"softafm: {store} could not be written: No space left on device; finished runs "
+            f"are in {store}; --resume continues the sweep\n"
         )
         assert 0 < read_status(store).done < 180
         free.unlink()

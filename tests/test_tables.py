@@ -96,7 +96,7 @@ def test_what_can_be_read_in_one_way_only_is_read(read, content):
          "'Zeit (us);height (nm)', with columns separated by ';'; it must read, for example, "
          f"'{EXAMPLE}'"),
         ("time (us),height (nm),Height (um)\n0,1,2\n", "has more than one column 'height': 'height "
-         "(nm)' and 'Height (um)'; leave one"),
+         "(nm)' and 'Height (um)'; keep only one"),
         ("time (us),height (nm)\n0,1\n1_0,2\n", "line 3 ('1_0,2'): 'time' must be a finite number"),
         ("time (us),height (nm)\n0,\uff11\n", "'height' must be a finite number"),
         ("time (us),height (nm)\n0,nan\n", "'height' must be a finite number"),
@@ -107,7 +107,7 @@ def test_what_can_be_read_in_one_way_only_is_read(read, content):
         ("time (us),height (nm)\n0,\n", "line 2 ('0,') has no 'height'"),
         ("time (us),height (nm)\n0,1 # first\n", "'height' must be a finite number"),
         ("time (us),height (nm)\n\"0,1\n1,2\n", "is not a CSV file: "),
-        ("time (us),height (nm)\n0,\"1\n\"\n", "is not a CSV file: a quoted field goes over sev"),
+        ("time (us),height (nm)\n0,\"1\n\"\n", "is not a CSV file: a quoted field spans sev"),
         ("time (us)   height (nm)   force (nN)\n0 1 2\n5            3.0\n", "line 3 ('5            "
          "3.0') has 2 fields, but the header, line 1, names 3: columns are separated by blanks, so "
          "no field may be empty or hold a blank"),

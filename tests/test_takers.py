@@ -32,7 +32,7 @@ def folder(tmp_path, monkeypatch):
         ("info campaign.toml", "sweep: the file describes a sweep, which 'softafm sweep' takes"),
         ("show campaign.toml", "sweep: the file describes a sweep, which 'softafm sweep' takes"),
         ("sweep map.toml", "map: the file describes a map, which 'softafm scan' takes"),
-        ("sweep tap.toml", "('softafm run' takes an experiment without)"),
+        ("sweep tap.toml", "('softafm run' runs an experiment without it)"),
         ("run tap.nc", "tap.nc: is a result, which 'softafm plot' and 'softafm export' take"),
         ("info tap.nc", "tap.nc: is a result, which 'softafm plot' and 'softafm export' take"),
         ("scan tap.nc", "tap.nc: is a result, which 'softafm plot' and 'softafm export' take"),

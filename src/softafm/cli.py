@@ -37,7 +37,7 @@ app = typer.Typer(
 )
 
 Config = Annotated[Path, typer.Argument(help="Experiment file in TOML.", metavar="CONFIG.toml")]
-Result = Annotated[Path, typer.Argument(help="What a run wrote.", metavar="RESULT.nc")]
+Result = Annotated[Path, typer.Argument(help="Result of a run.", metavar="RESULT.nc")]
 Force = Annotated[bool, typer.Option("--force", help="Overwrite an existing output.")]
 Overrides = Annotated[
     list[str] | None,
@@ -94,10 +94,12 @@ def run(
     overrides: Overrides = None,
     solver: Annotated[str | None, typer.Option(help="Name of the solver.")] = None,
     tolerance: Annotated[str | None, typer.Option(help="Target relative error.")] = None,
-    profiles: Annotated[bool, typer.Option("--profiles", help="Keep surface shapes.")] = False,
-    check: Annotated[bool, typer.Option("--check", help="Repeat it finer and compare.")] = False,
+    profiles: Annotated[bool, typer.Option("--profiles", help="Keep surface profiles.")] = False,
+    check: Annotated[
+        bool, typer.Option("--check", help="Repeat the run finer and compare.")
+    ] = False,
     regularise: Annotated[
-        str | None, typer.Option(help="Tabor number of a softer contact.", metavar="NUMBER")
+        str | None, typer.Option(help="Lower the Tabor number to this.", metavar="NUMBER")
     ] = None,
     force: Force = False,
 ) -> None:
@@ -126,7 +128,7 @@ def scan(
     config: Annotated[Path, typer.Argument(help="Map file in TOML.", metavar="MAP.toml")],
     out: Annotated[Path | None, typer.Option(help="Result; default MAP.nc here.")] = None,
     overrides: Overrides = None,
-    workers: Annotated[int | None, typer.Option(help="Processes; default one a core.")] = None,
+    workers: Annotated[int | None, typer.Option(help="Processes; default one per core.")] = None,
     force: Force = False,
 ) -> None:
     """Image the sample of a map file, save the maps and show their ranges."""
@@ -146,7 +148,7 @@ def scan(
 
 
 def _carry_out(what: str, run: "Callable[..., Dataset]") -> "Dataset":
-    """Return what a run gives, shown as it goes on; why it ends early is told in one line."""
+    """Return the result of a run, and show its progress; if it ends early, one line says why."""
     from softafm.experiment.config import ConfigError
 
     try:
@@ -167,7 +169,7 @@ def _count_cores() -> int:
 
 @app.command()
 def example(
-    name: Annotated[str | None, typer.Argument(help="Which one; none lists them.")] = None,
+    name: Annotated[str | None, typer.Argument(help="Which one; without a name, list all.")] = None,
     out: Annotated[Path | None, typer.Option(help="File; default NAME.toml here.")] = None,
     force: Force = False,
 ) -> None:
@@ -213,7 +215,7 @@ def docs(
 @app.command()
 def plot(
     results: Annotated[
-        list[Path], typer.Argument(help="What runs wrote; several share axes.", metavar="RESULT.nc")
+        list[Path], typer.Argument(help="Results of runs; several share axes.", metavar="RESULT.nc")
     ],
     out: Annotated[Path | None, typer.Option(help="Figure; default RESULT.png here.")] = None,
     profiles: Annotated[
@@ -246,7 +248,7 @@ def animate(
     frames: Annotated[int, typer.Option(help="Number of frames.")] = 150,
     seconds: Annotated[float, typer.Option(help="Duration of the movie.")] = 6.0,
     start: Annotated[
-        str | None, typer.Option(help="Time of the run to begin at, e.g. 1.5us.", metavar="TIME")
+        str | None, typer.Option(help="Time of the run to start at, e.g. 1.5us.", metavar="TIME")
     ] = None,
     stop: Annotated[str | None, typer.Option(help="Time to end at.", metavar="TIME")] = None,
     force: Force = False,
@@ -272,7 +274,7 @@ def animate(
 
 
 def _load(path: Path) -> "Dataset":
-    """Read a result; ValueError, or OSError, if it is none."""
+    """Read a result; ValueError or OSError if the file does not hold one."""
     from softafm.experiment.takers import refuse_other_than_result
     from softafm.results import datasets as results
 
@@ -351,18 +353,18 @@ def sweep(
         Path | None, typer.Option(help="Store; default CAMPAIGN.zarr here.", metavar="STORE.zarr")
     ] = None,
     overrides: Overrides = None,
-    workers: Annotated[int | None, typer.Option(help="Processes; default one a core.")] = None,
+    workers: Annotated[int | None, typer.Option(help="Processes; default one per core.")] = None,
     scheduler: Annotated[
-        str | None, typer.Option(help="Of a Dask cluster, instead.", metavar="tcp://HOST:PORT")
+        str | None, typer.Option(help="Dask cluster to use instead.", metavar="tcp://HOST:PORT")
     ] = None,
-    resume: Annotated[bool, typer.Option("--resume", help="Go on with a store.")] = False,
-    yes: Annotated[bool, typer.Option("--yes", help="However many runs these are.")] = False,
+    resume: Annotated[bool, typer.Option("--resume", help="Continue an earlier sweep.")] = False,
+    yes: Annotated[bool, typer.Option("--yes", help="Allow any number of runs.")] = False,
     status: Annotated[
-        Path | None, typer.Option(help="Tell how far a sweep is.", metavar="STORE.zarr")
+        Path | None, typer.Option(help="Show how far a sweep is.", metavar="STORE.zarr")
     ] = None,
     force: Force = False,
 ) -> None:
-    """Run an experiment for many values of its fields, and keep what all runs give."""
+    """Run an experiment for many values of its fields, and keep their observables."""
     if (config is None) == (status is None):
         raise _BadInput("sweep: give a CAMPAIGN.toml, or --status and a store")
     with _report_bad_input():
@@ -383,7 +385,7 @@ def sweep(
             campaign, out, batch=batch, scheduler=scheduler, workers=workers, resume=resume,
             force=force,
         )  # fmt: skip
-    goes_on = f"what is finished is in {out}; --resume goes on with it"
+    goes_on = f"finished runs are in {out}; --resume continues the sweep"
     try:
         sweeps.finish(campaign, ready, scheduler, workers, progress=sys.stderr.isatty())
     except KeyboardInterrupt:
@@ -519,7 +521,7 @@ def _print(renderable) -> None:
 
 @contextmanager
 def _show_progress() -> Iterator[Callable[[float, str], None]]:
-    """Yield what a run is to call with its progress: a bar on a terminal, and Ctrl-C heeded."""
+    """Yield a function for a run to report progress to: a bar on a terminal. Ctrl-C ends a run."""
     from softafm.progress import reporting
 
     with _heed_interrupts() as heed, reporting(sys.stderr.isatty()) as report:
@@ -570,14 +572,14 @@ def _show_warnings() -> Iterator[None]:
     with warnings.catch_warnings():
         warnings.simplefilter("always", AccuracyWarning)
         warnings.simplefilter("default", DoubtfulValueWarning)
-        usual, told = warnings.showwarning, set()
+        usual, printed = warnings.showwarning, set()
 
         def show(message, category, *place, **options):
             if issubclass(category, AccuracyWarning | DoubtfulValueWarning):
                 text = " ".join(str(message).split())
-                if text not in told:
+                if text not in printed:
                     print(f"softafm: warning: {text}", file=sys.stderr)
-                told.add(text)
+                printed.add(text)
             else:
                 usual(message, category, *place, **options)
 

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 _MOST_POINTS = 20_000
 _MISSED = 1e-4
-"""Of the range of a column, by how much each round of leaving out samples may at first miss it."""
+"""Of the range of a column, by how much each round of leaving out points may at first miss it."""
 
 
 class Parts(NamedTuple):
@@ -86,11 +86,11 @@ def _collect_history(result: "Dataset") -> Parts:
     kept = thin(columns["time"], list(columns.values()), _MOST_POINTS)
     time, height = columns["time"], columns[histories.name_moved(result)][kept]
     strokes: dict[str, list[slice]] = {direction: [] for direction in DIRECTIONS}
-    for samples, falling in histories.split_strokes(height):
-        strokes["approach" if falling else "retract"].append(samples)
+    for stroke, falling in histories.split_strokes(height):
+        strokes["approach" if falling else "retract"].append(stroke)
     lines = {
-        direction: {name: _separate(values[kept], samples) for name, values in columns.items()}
-        for direction, samples in strokes.items()
+        direction: {name: _separate(values[kept], slices) for name, values in columns.items()}
+        for direction, slices in strokes.items()
     }
     jumps = result["jump_time"].values
     points = {name: np.interp(jumps, time, values) for name, values in columns.items()}
@@ -114,14 +114,14 @@ def _collect_approach_curve(result: "Dataset") -> Parts:
     return Parts(lines, points, jumps)
 
 
-def _separate(values: np.ndarray, samples: Sequence[slice]) -> np.ndarray:
+def _separate(values: np.ndarray, slices: Sequence[slice]) -> np.ndarray:
     """Return stretches of an array one after another, with NaN between them."""
-    pieces = [piece for one in samples for piece in (values[one], [np.nan])]
+    pieces = [piece for one in slices for piece in (values[one], [np.nan])]
     return np.concatenate(pieces[:-1]) if pieces else np.empty(0)
 
 
 def thin(time: np.ndarray, columns: Sequence[np.ndarray], most: int) -> np.ndarray:
-    """Return the indices of at most ``most`` samples, and all if there are no more than that.
+    """Return the indices of at most ``most`` points, and all if there are no more than that.
 
     Straight lines between them in ``time`` miss no column by more of its range than is needed to
     have so few, and so one column drawn against another keeps its shape. Ends and extremes stay.
@@ -150,7 +150,7 @@ def _leave_out_straight(
     missed: float,
     first: int,
 ) -> np.ndarray:
-    """Leave out every other sample, from ``first`` on, that lies between its neighbours."""
+    """Leave out every other point, from ``first`` on, that lies between its neighbours."""
     before, at, after = (kept[first + shift :][: kept.size - 1 - first : 2] for shift in (-1, 0, 1))
     size = min(before.size, at.size, after.size)
     before, at, after = before[:size], at[:size], after[:size]

@@ -87,8 +87,8 @@ def draw_figures(shown: Sequence[Shown], theme: Theme) -> dict[str, LayoutDOM]:
     Returns
     -------
     dict
-        For each title of a tab a figure, or a column of them with one abscissa; tabs that none of
-        the runs has anything for are left out.
+        For each title of a tab a figure, or a column of them with one abscissa; tabs
+        without data are left out.
     """
     found = [(one, collect_parts(one.result)) for one in shown]
     drawable = [(one, parts) for one, parts in found if parts is not None]

@@ -23,8 +23,8 @@ export function render({ model, el }) {
   const elsewhere = make("ul", { className: "elsewhere" });
   const basics = make("div", { className: "basics" });
   const advanced = make("details", { className: "advanced" });
-  const told = make("span", { className: "told" });
-  advanced.append(make("summary", {}, "solver and run", told));
+  const changed = make("span", { className: "changed" });
+  advanced.append(make("summary", {}, "solver and run", changed));
   const preset = chooser("preset", "preset");
   const mode = chooser("mode", "mode");
   el.append(make("div", { className: "softafm-form" }, preset.row, mode.row, elsewhere, basics,
@@ -219,7 +219,7 @@ export function render({ model, el }) {
     const { state } = model;
     preset.select.value = state.preset;
     mode.select.value = state.mode;
-    const told_of = [];
+    const changes = [];
     let trouble = false;
     for (const { node, section } of sections.values()) {
       const rows = [...node.querySelectorAll(":scope > .row")];
@@ -230,13 +230,13 @@ export function render({ model, el }) {
         fill(field, rows[index + 1], value);
         mark(rows[index + 1], state.problems[field.path]);
         if (section.advanced && value !== "" && value !== "false")
-          told_of.push(field.kind === "flag" ? field.label : `${field.label} ${value}`);
+          changes.push(field.kind === "flag" ? field.label : `${field.label} ${value}`);
         trouble ||= section.advanced && Boolean(state.problems[field.path]);
       });
       trouble ||= section.advanced && Boolean(state.problems[section.path]);
     }
     if (trouble) advanced.open = true;
-    told.textContent = told_of.join(", ");
+    changed.textContent = changes.join(", ");
     mark(mode.row, state.problems.mode);
     elsewhere.replaceChildren(...state.elsewhere.map(([path, reason]) => {
       const remove = make("button", { type: "button", className: "remove" }, "remove");

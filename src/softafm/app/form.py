@@ -31,7 +31,7 @@ class Field:
     """A key of a table, and how its value is written.
 
     ``kind`` and ``unit`` are as in ``softafm.experiment.entries.Input``; ``example`` and
-    ``default`` are texts, "" if there is none; ``help`` tells the meaning, with SI unit and bounds.
+    ``default`` are texts, "" if there is none; ``help`` is the meaning, with SI unit and bounds.
     """
 
     name: str
@@ -68,7 +68,7 @@ class Section:
 
     ``chooser`` is the key that chooses, "" if there is nothing to choose, and ``default`` the
     choice that a table without this key stands for. ``entries`` are fields, and alternatives where
-    the first of their keys stands. ``choice`` is "" if it is none of ``choices``.
+    the first of their keys stands. ``choice`` is "" if it is not among ``choices``.
     """
 
     table: str
@@ -169,7 +169,7 @@ def _describe_alternatives(
     table: str, made: type[schema.Table], ways: tuple[tuple[str, ...], ...]
 ) -> Alternatives:
     # A thing's alternatives are its constructors, one a way, which may mean different things by
-    # keys of one name; those of other tables are told by all that the table builds together.
+    # keys of one name; those of other tables are documented by everything the table builds.
     makers = made.constructors if issubclass(made, schema.Thing) else (None,) * len(ways)
     pairs = zip(ways, makers, strict=True)
     return Alternatives(

@@ -42,7 +42,7 @@ _STANDS_FOR: dict[Any, tuple[Callable, ...]] = {
     schema.measured_moduli: (GeneralizedMaxwell.from_dma, GeneralizedMaxwell, read_dma),
     schema.tabulated: (read_law,),
 }
-"""What tells the meaning of the keys of hand-written tables, and of functions that build."""
+"""What documents the keys of hand-written tables, and of functions that build."""
 
 _PARAMETER = {"work_of_adhesion": "W", "file": "path"}
 """What a key is called where it is not called as in the table."""
@@ -54,7 +54,7 @@ def find_summary(table: type[schema.Table]) -> str:
 
 
 def find_help(table: type[schema.Table], key: str, constructor: Callable | None = None) -> str:
-    """Return what a key of a table means, with its SI unit and bounds; "" if nothing tells.
+    """Return what a key of a table means, with its SI unit and bounds; "" if undocumented.
 
     ``constructor`` is the one of the table's that is to be called, if it matters.
     """
@@ -68,7 +68,7 @@ def find_help(table: type[schema.Table], key: str, constructor: Callable | None 
 
 
 def _find_documented(table: type[schema.Table]) -> tuple[Callable, ...]:
-    """Return what builds a table's object, and so tells what its keys mean."""
+    """Return what builds a table's object, and so documents its keys."""
     if table in _STANDS_FOR:
         return _STANDS_FOR[table]
     if issubclass(table, schema.Solver):

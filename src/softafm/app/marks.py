@@ -16,7 +16,7 @@ def add_missing(
 ) -> dict[str, str]:
     """Return the problems, of which each empty field that must be given is one.
 
-    That one of several groups of keys must be given is left out where such fields tell it.
+    The problem "give one of these keys" is left out if marked fields show it.
     """
     empty = [
         (one.path, f"{one.path}.{field.name}")
@@ -26,11 +26,11 @@ def add_missing(
     ]
     if not problems:
         return {}
-    told = {table for table, path in empty}
+    marked = {table for table, path in empty}
     kept = {
         path: reason
         for path, reason in problems.items()
-        if not (path in told and reason.startswith("give "))
+        if not (path in marked and reason.startswith("give "))
     }
     return {path: MISSING for _, path in empty} | kept
 

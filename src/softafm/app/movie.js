@@ -1,5 +1,5 @@
 // Plays a movie of tip and surface. Runs as the one callback of all its controls; what was shipped
-// stays as it is, and nothing that moves is told to the server.
+// stays as it is, and nothing that moves is sent to the server.
 
 let place = 0;  // in the movie, in frames
 let last = null;  // when the last frame was drawn, ms; null while paused
@@ -77,7 +77,7 @@ export default (args, cause) => {
   const by = cause.origin ?? cause;
   if (by === args.button) {
     play(args, last === null);
-    // With another label the button is a new one: whoever pressed Space wants to press it again.
+    // With another label the button is a new one: a user who pressed Space wants to press it again.
     requestAnimationFrame(() => Bokeh.index.find_one(args.button)?.button_el?.focus());
   }
   else if (by === args.stage) fit(args);

@@ -1,6 +1,6 @@
 """The movie of tip and surface in the browser, linked to markers on the force curve.
 
-All shapes are sent once, as whole numbers; ``movie.js`` plays them.
+All profiles are sent once, as whole numbers; ``movie.js`` plays them.
 """
 
 from importlib import resources
@@ -23,7 +23,7 @@ from bokeh.plotting import figure as new_figure
 
 from softafm.app.colours import Theme, in_role, recolour
 from softafm.app.movie_data import CURVES, Movie, make_movie
-from softafm.draw.scenes import require_shapes
+from softafm.draw.scenes import require_profiles
 
 if TYPE_CHECKING:
     from bokeh.plotting import figure as Figure
@@ -51,10 +51,10 @@ def make_player(result: "Dataset", theme: Theme) -> LayoutDOM | None:
     Returns
     -------
     LayoutDOM or None
-        None if the result holds no shapes.
+        None if the result holds no profiles.
     """
     try:
-        require_shapes(result)
+        require_profiles(result)
     except ValueError:
         return None
     shown = make_movie(result, FRAMES)

@@ -1,4 +1,4 @@
-"""What a movie in the browser is made of: shapes as whole numbers, and the force curve."""
+"""What a movie in the browser is made of: profiles as whole numbers, and the force curve."""
 
 from math import ceil
 from typing import TYPE_CHECKING, NamedTuple
@@ -65,7 +65,7 @@ class Movie(NamedTuple):
 
 
 def make_movie(result: "Dataset", frames: int) -> Movie:
-    """Return the movie of a result that holds shapes, while force acts and the surface returns."""
+    """Return the movie of a result with profiles, while force acts and the surface returns."""
     start, stop = choose_window(result)
     scenes = interpolate_scenes(result, np.linspace(start, stop, frames))
     view = choose_view(result, start, stop, _SHAPE)

@@ -15,7 +15,7 @@ FRAME = {"height": 760, "sizing_mode": "stretch_width", "css_classes": ["softafm
 def load_panel() -> None:
     """Load Panel into the notebook, all from this machine.
 
-    Each time: the browser may have been reloaded since, which the kernel is not told.
+    Each time: the browser may have been reloaded since, which the kernel does not know.
     """
     pn.extension(inline=True)
 

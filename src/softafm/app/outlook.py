@@ -23,7 +23,7 @@ _LINE = re.compile(r"([\w.\[\]-]+)(?: = .*?)?: (.*)")
 class Outlook:
     """What a document leads to.
 
-    ``problems`` are reasons by the path of what they refuse; without any, ``rows`` tell the regime
+    ``problems`` are reasons by the path of what they refuse; without any, ``rows`` give the regime
     and ``seconds`` the order of magnitude of a run, s on one core.
     """
 
@@ -33,7 +33,7 @@ class Outlook:
 
 
 def foresee(document: Mapping[str, Any], folder: Path) -> Outlook:
-    """Return what is wrong with a document, or its regime; its files are sought in ``folder``."""
+    """Return what is wrong with a document, or its regime; its files are in ``folder``."""
     needed = [name for name in list_tables(document.get("mode")) if name not in _OPTIONAL]
     whole = {**dict(document), **{name: {} for name in needed if name not in document}}
     try:

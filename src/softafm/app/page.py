@@ -261,7 +261,7 @@ class Page(pn.viewable.Viewer):
             words = f"reading {self._file[0]} ..."
         if not words and problems:
             count = len(problems)
-            words, bad = f"{count} value{'s' * (count > 1)} to mend before it can run", True
+            words, bad = f"{count} value{'s' * (count > 1)} to correct before it can run", True
         elif not words and seconds is not None:
             words = f"expected to take {describe_time(seconds)}"
         return {

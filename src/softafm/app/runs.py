@@ -1,7 +1,7 @@
 """Runs in processes of their own, one after another for each: a queue, progress and cancel.
 
 The processes stay warm between runs. One that crashes, or is ended to cancel its run, is replaced;
-whoever asks for runs only ever sees a ``Job``.
+callers only ever see a ``Job``.
 """
 
 import threading
@@ -70,7 +70,7 @@ class Job:
 
     @property
     def remaining(self) -> float | None:
-        """Estimate of how long it will still run, s; None as long as nobody can tell."""
+        """Estimate of how long it will still run, s; None while it is unknown."""
         done = self.fraction
         if self.state != "running" or done < _LEAST_KNOWN:
             return None
@@ -81,7 +81,7 @@ class Job:
         self._runner._end(self, "cancelled", stop=True)
 
     def wait(self, timeout: float | None = None) -> bool:
-        """Wait until it is over, at most ``timeout`` s, and tell whether it is."""
+        """Wait until it is over, at most ``timeout`` s; return whether it is."""
         return self._over.wait(timeout)
 
 
@@ -152,7 +152,7 @@ class Runner:
             return any(process.alive for process in self._alive)
 
     def submit(self, document: Mapping[str, Any], folder: Path, user: str) -> Job:
-        """Queue a run of an experiment; files are sought in ``folder``.
+        """Queue a run of an experiment; its files are in ``folder``.
 
         Raises
         ------

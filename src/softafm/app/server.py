@@ -26,7 +26,7 @@ def serve(
     origins: tuple[str, ...] = (),
     show: bool = True,
 ) -> None:
-    """Serve the page until interrupted, or told to terminate.
+    """Serve the page until interrupted or terminated.
 
     Parameters
     ----------

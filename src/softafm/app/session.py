@@ -161,7 +161,7 @@ class Session:
     def _refuse_more(self) -> None:
         most = self._limits.listed
         if len(self.entries) >= most:
-            raise ValueError(f"{most} runs are listed, as many as may be: remove some first")
+            raise ValueError(f"{most} runs are listed, the most allowed: remove some first")
         kept = sum(entry.size for entry in self.entries)
         if kept >= self._limits.kept_bytes:
             raise ValueError(

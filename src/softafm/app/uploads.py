@@ -26,7 +26,7 @@ def keep(folder: Path, name: str, content: bytes, largest: int) -> str:
         return plain
     if sum(path.stat().st_size for path in kept) + len(content) > _ALL * largest:
         raise ValueError(
-            f"is one too many: all files may have {_ALL * largest / 1e6:g} MB together"
+            f"exceeds the total: all files may have {_ALL * largest / 1e6:g} MB together"
         )
     taken = {path.name for path in kept}
     numbered = (f"{number}-{plain}" for number in range(2, len(taken) + 3))

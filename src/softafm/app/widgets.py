@@ -148,7 +148,7 @@ class Form(pn.viewable.Viewer):
         self._answer(add_part(self.document))
 
     def remove(self, path: str) -> None:
-        """Remove what stands at a path: a part of a sum, or a key that is of no use."""
+        """Remove what stands at a path: a part of a sum, or a key that does not belong."""
         self._typed.clear()
         self._answer(remove(self.document, path))
 
@@ -169,7 +169,7 @@ class Form(pn.viewable.Viewer):
 
     @property
     def reading(self) -> bool:
-        """Whether a file that the document names is being read; ``look`` tells when it was."""
+        """Whether a file that the document names is being read; ``look`` notices when it was."""
         return self._reading
 
     def look(self) -> None:

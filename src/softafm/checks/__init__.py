@@ -1,1 +1,1 @@
-"""How values are refused or doubted, and how that is told."""
+"""How values are refused or doubted, and how that is reported."""

@@ -1,4 +1,4 @@
-"""Warnings of many runs, told as one of each kind: how many there are, and the worst."""
+"""Warnings of many runs, reported as one of each kind: how many there are, and the worst."""
 
 import warnings
 from collections.abc import Callable, Hashable, Iterable, Iterator

@@ -91,7 +91,7 @@ def explain_limit(given: str) -> str:
     """Say of a theory of contact given as a surface law what it is instead; else return ""."""
     name, what = _LIMITS.get(_simplify(given), ("", ""))
     return name and (
-        f"{name} is no law but the limit of {what}; its closed form is in softafm.indentation; "
+        f"{name} is not a law but the limit of {what}; its closed form is in softafm.indentation; "
     )
 
 

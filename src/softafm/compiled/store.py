@@ -137,7 +137,7 @@ def take_turns() -> Iterator[None]:
     """Let one process of the user at a time compile for this build; not on Windows.
 
     Numba's code for the same sources differs in the order of operations from process to process. So
-    whoever waited looks again, and all take what the first one kept.
+    a process that waited looks again, and all use what the first one kept.
     """
     place = find_folder()
     try:

@@ -24,7 +24,7 @@ from softafm.draw.scene_parts import (
     make_writers,
     write_titles,
 )
-from softafm.draw.scenes import choose_view, choose_window, interpolate_scenes, require_shapes
+from softafm.draw.scenes import choose_view, choose_window, interpolate_scenes, require_profiles
 from softafm.progress import Progress, reporting
 from softafm.results.datasets import write_whole
 from softafm.units.quantities import choose_prefix
@@ -61,7 +61,7 @@ def animate(
 
     The frames are evenly spaced in time. Radii and heights have the same scale, except under a
     tip so blunt that nothing would be seen; the axis then says how far heights are stretched. An
-    .html file is a player with the shapes inside: it needs a browser, but no other file or
+    .html file is a player with the profiles inside: it needs a browser, but no other file or
     address.
 
     Parameters
@@ -85,7 +85,7 @@ def animate(
     Raises
     ------
     ValueError
-        If the result holds no surface shapes, the suffix is not known or an argument is out of
+        If the result holds no surface profiles, the suffix is not known or an argument is out of
         range.
     FileExistsError, OSError
         As ``save``.
@@ -97,7 +97,7 @@ def animate(
     if suffix not in SUFFIXES:
         raise ValueError(f"{path}: suffix {suffix!r} is not known, must be .mp4, .gif or .html")
     refuse_non_dataset("result", result)
-    require_shapes(result)
+    require_profiles(result)
     whole("frames", frames, 2, _MOST_FRAMES)
     seconds = positive("seconds", seconds, "s")
     if suffix == ".gif" and seconds < frames * _SHORTEST_GIF_FRAME:
@@ -245,7 +245,7 @@ def _write_mp4(movie: _Movie, path, seconds: float, report_frame: FrameReport) -
 
 
 def _write_html(movie: _Movie, path, seconds: float, report_frame: FrameReport) -> None:
-    """Write a page that draws the shapes itself, from whole numbers in fractions of a pixel."""
+    """Write a page that draws the profiles itself, from whole numbers in fractions of a pixel."""
     scenes, view = movie.scenes, movie.view
     in_radius, in_height = movie.scale.tolist()
     in_time, in_force = movie.in_time, movie.in_force

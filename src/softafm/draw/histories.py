@@ -38,7 +38,7 @@ def name_moved(run: "Dataset") -> str:
 
 
 def split_strokes(height: np.ndarray) -> Iterator[tuple[slice, bool]]:
-    """Yield the strokes of a motion as (samples, whether the tip falls).
+    """Yield the strokes of a motion as (points, whether the tip falls).
 
     A stroke ends at its extreme height once the motion has reversed by a fiftieth of its range:
     the noise of a measured trajectory makes none.

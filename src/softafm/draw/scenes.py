@@ -17,7 +17,7 @@ STRETCHES = (5, 10, 20, 50, 100, 200, 500, 1000, 2000, 5000, 10_000)
 
 
 class Scenes(NamedTuple):
-    """Tip and surface at instants: ``time``, ``force``, ``velocity`` (n,); shapes (n, r)."""
+    """Tip and surface at instants: ``time``, ``force``, ``velocity`` (n,); profiles (n, r)."""
 
     time: np.ndarray
     force: np.ndarray
@@ -54,11 +54,11 @@ class View(NamedTuple):
     """How many times heights are drawn larger than radii: 1 but for very blunt tips."""
 
 
-def require_shapes(result: "Dataset") -> None:
-    """Raise ValueError if a result holds no surface shapes."""
+def require_profiles(result: "Dataset") -> None:
+    """Raise ValueError if a result holds no surface profiles."""
     if "deformation" not in result or "gap" not in result:
         raise ValueError(
-            "the result holds no surface shapes: run it with --profiles (profiles=True in Python)"
+            "the result holds no surface profiles: run it with --profiles (profiles=True in Python)"
         )
 
 
@@ -128,7 +128,7 @@ def find_jumping_steps(time: np.ndarray, jumps: np.ndarray) -> np.ndarray:
 
 
 def interpolate_scenes(result: "Dataset", instants: np.ndarray) -> Scenes:
-    """Interpolate shapes and force linearly between the steps of a run.
+    """Interpolate profiles and force linearly between the steps of a run.
 
     Over an elastic jump nothing is interpolated: all stays as it was until the jump has happened.
     """

@@ -15,7 +15,7 @@ from softafm.draw.scenes import (
     find_jumping_steps,
     interpolate_scenes,
     measure_changes,
-    require_shapes,
+    require_profiles,
 )
 
 if TYPE_CHECKING:
@@ -59,12 +59,12 @@ def plot_profiles(
     Raises
     ------
     ValueError
-        If the result holds no surface shapes or an argument is out of range.
+        If the result holds no surface profiles or an argument is out of range.
     """
     from matplotlib.figure import Figure
 
     refuse_non_dataset("result", result)
-    require_shapes(result)
+    require_profiles(result)
     whole("frames", frames, 2, len(_LETTERS))
     instants = choose_instants(result, frames, *choose_window(result, start, stop, margin=0.05))
     columns = min(_COLUMNS, ceil(frames / 2))

@@ -11,7 +11,7 @@ from matplotlib.ticker import EngFormatter, MaxNLocator
 
 from softafm.units.quantities import write_quantity
 
-# Okabe and Ito's palette: told apart under every common colour blindness, and in grey.
+# Okabe and Ito's palette: distinct under every common colour blindness, and in grey.
 COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000")
 APPROACH: Final = "-"
 RETRACT: Final = (0, (4, 1.5))

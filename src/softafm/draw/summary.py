@@ -48,7 +48,7 @@ def list_observables(dataset: "Dataset") -> Table:
 
 
 def _add_check(table: Table, attributes: dict, differences: dict[str, float]) -> None:
-    """Tell how far a run is from the finer one."""
+    """Add how far a run is from the finer one."""
     if "check_tolerance" in attributes:
         against = f"at tolerance {attributes['check_tolerance']:.4g}"
     else:
@@ -69,7 +69,7 @@ def _write_percent(share: float) -> str:
 
 
 def _add_branches(table: Table, dataset: "Dataset") -> None:
-    """Tell how far each branch reaches, and where the lever jumps in a sweep of its height."""
+    """Add how far each branch reaches, and where the lever jumps on approach and retract."""
     branches = map(str, dataset["branch"].values)
     columns = (dataset[name].values for name in ("mean_height", "dissipation", "phase"))
     for branch, height, dissipation, phase in zip(branches, *columns, strict=True):
@@ -94,7 +94,7 @@ def _add_branches(table: Table, dataset: "Dataset") -> None:
 
 
 def _add_map(table: Table, dataset: "Dataset") -> None:
-    """Tell mean and range of every map."""
+    """Add mean and range of every map."""
     for name, variable in dataset.data_vars.items():
         values = variable.values[np.isfinite(variable.values)]
         if variable.dims != ("y", "x") or not values.size:
@@ -115,14 +115,14 @@ def _write_degrees(phase: np.ndarray) -> str:
 
 
 def describe_slowing(slower: float) -> str:
-    """Tell how much slower the edge of a viscoelastic contact is in cohesive lengths."""
+    """Return how much slower the edge of a viscoelastic contact is in cohesive lengths."""
     if slower == 1:
         return ""
     return f"; the edge crosses its cohesive length {slower:.2g} times more slowly"
 
 
 def describe_regularisation(tabor: float, before: float, length: float) -> str:
-    """Tell what Tabor number and range, m, a contact had that has a range of ``length``, m, now."""
+    """Return what Tabor number and range, m, a contact had whose range is now ``length``, m."""
     if before == length:
         return f"of the law; a Tabor number of {tabor:.3g} needs no other"
     was = f"it was {write_quantity(before, 'm')} at a Tabor number of {tabor:.3g}"
@@ -130,8 +130,8 @@ def describe_regularisation(tabor: float, before: float, length: float) -> str:
 
 
 def describe_misfit(largest: float, rms: float) -> tuple[str, str, str]:
-    """Return a row that tells how well a sample fits the measured moduli it was fitted to."""
-    words = f"from the measured moduli, at most; {100 * rms:.2g} % in the mean square"
+    """Return a row that says how well a sample fits the measured moduli it was fitted to."""
+    words = f"from the measured moduli, at most; {100 * rms:.2g} % root mean square"
     return "fit off by", f"{100 * largest:.2g} %", words
 
 

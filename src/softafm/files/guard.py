@@ -2,7 +2,7 @@
 
 A damaged file can make a library loop for ever, take all memory or end its process. What happens
 to the process of a reading happens to no one else, and what it answers is plain: JSON, and numbers
-whose type and size are told before, so that whoever asked executes nothing of it.
+whose type and size are stated before, so that the caller executes nothing of it.
 """
 
 import json
@@ -49,7 +49,7 @@ def read_apart(
 ) -> tuple[Any, list[np.ndarray]]:
     """Return what a reader returns: what JSON can hold, and arrays of numbers or texts.
 
-    It ends with whoever called, be it by Ctrl-C.
+    It ends with its caller, also by Ctrl-C.
 
     Parameters
     ----------
@@ -112,7 +112,7 @@ def _start(command: Sequence[str]) -> Iterator[subprocess.Popen[bytes]]:
 
 @contextmanager
 def _kill_after(process: subprocess.Popen[bytes], seconds: float) -> Iterator[Event]:
-    """Kill a process that takes longer; the event tells whether that was done."""
+    """Kill a process that takes longer; the event is set if that was done."""
     late = Event()
 
     def end() -> None:
@@ -129,10 +129,10 @@ def _kill_after(process: subprocess.Popen[bytes], seconds: float) -> Iterator[Ev
 
 
 def _read_answer(stream: IO[bytes], largest: int) -> tuple[Any, list[np.ndarray]]:
-    told = json.loads(stream.readline(_OWN_MEMORY))
-    if "problem" in told:
-        raise Unreadable(str(told["problem"])[:_LONGEST_PROBLEM])
-    content, described = told["content"], told["arrays"]
+    header = json.loads(stream.readline(_OWN_MEMORY))
+    if "problem" in header:
+        raise Unreadable(str(header["problem"])[:_LONGEST_PROBLEM])
+    content, described = header["content"], header["arrays"]
     kinds = [(np.dtype(kind), tuple(map(int, shape))) for kind, shape in described]
     if any(kind.kind not in "fiubU" for kind, _ in kinds):
         raise TypeError("no array of numbers or texts")
@@ -182,7 +182,7 @@ def _bound(name: str, value: int) -> None:
 
 def main(reader: str, seconds: str, memory: str) -> None:
     """Read what stdin names, and answer on stdout."""
-    signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is for whoever asked, and then ends us
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is for the caller, which then ends us
     answers = os.fdopen(os.dup(sys.stdout.fileno()), "wb")
     os.dup2(sys.stderr.fileno(), sys.stdout.fileno())  # what a library prints is no answer
     module, _, function = reader.partition(":")
@@ -199,13 +199,13 @@ def main(reader: str, seconds: str, memory: str) -> None:
     try:
         content, arrays = read(*arguments)
         described = [(array.dtype.str, array.shape) for array in arrays]
-        told = json.dumps({"content": content, "arrays": described})
+        header = json.dumps({"content": content, "arrays": described})
     except MemoryError:
-        arrays, told = [], json.dumps({"problem": "needs more memory than it may have"})
+        arrays, header = [], json.dumps({"problem": "needs more memory than it may have"})
     except Exception as problem:
         words = str(problem) if isinstance(problem, ValueError) else repr(problem)
-        arrays, told = [], json.dumps({"problem": "; ".join(words.splitlines())})
-    answers.write(told.encode() + b"\n")
+        arrays, header = [], json.dumps({"problem": "; ".join(words.splitlines())})
+    answers.write(header.encode() + b"\n")
     for array in arrays:
         answers.write(np.ascontiguousarray(array).reshape(-1).view(np.uint8).data)
     answers.flush()

@@ -60,7 +60,7 @@ def read_path(path: str | Path, moves: Moves = "tip") -> tuple[np.ndarray, np.nd
     found = [c for c in map(table.find, ("height", "tip_height", "base_height")) if c is not None]
     if len(found) > 1 and found[0].name == "height":
         titles = " and ".join(quote(column.title) for column in found)
-        raise ValueError(f"has columns {titles}, any of which may be the motion; leave one")
+        raise ValueError(f"has columns {titles}, any of which may be the motion; keep only one")
     name = found[0].name if len(found) == 1 else f"{moves}_height" if found else "height"
     time = table.in_si(table.column("time"), TIME)
     for row in np.flatnonzero(np.diff(time) <= 0).tolist():

@@ -25,7 +25,7 @@ _THOUSANDS = re.compile(r"[+-]?[1-9][0-9]{0,2},[0-9]{3}")
 _NAME_AND_UNIT = re.compile(r"(.*?\S)\s*[(\[]([^()\[\]]*)[)\]]|([^/]+)/(.+)")
 _TITLE_BETWEEN_BLANKS = re.compile(r"[^\s(\[]\S*(?:\s*[(\[][^)\]]{0,40}[)\]])?")
 _DECLARED = re.compile(r'"?sep=([,;\t])"?[,;\s]*', re.IGNORECASE)
-"""The line by which Excel is told what separates columns."""
+"""The line that states for Excel what separates columns."""
 _PRIMES = str.maketrans({"′": "'", "’": "'", "″": "''", '"': "''"})
 _SEPARATORS = {",": "','", ";": "';'", "\t": "tabs", " ": "blanks"}
 
@@ -100,7 +100,7 @@ class Table:
         found = [c for c in self.columns if {_simplify(c.title), _simplify(c.name)} & wanted]
         if len(found) > 1:
             titles = " and ".join(quote(column.title) for column in found)
-            raise ValueError(f"has more than one column '{names[0]}': {titles}; leave one")
+            raise ValueError(f"has more than one column '{names[0]}': {titles}; keep only one")
         return found[0] if found else None
 
     def column(self, *names: str) -> Column:
@@ -204,7 +204,7 @@ class Table:
         except csv.Error as error:
             line = numbers[reader.line_num - 1]
             raise ValueError(f"is not a CSV file: line {line}: {error}") from None
-        raise ValueError("is not a CSV file: a quoted field goes over several lines")
+        raise ValueError("is not a CSV file: a quoted field spans several lines")
 
     def _describe_width(self, line: int, cells: list[str], columns: int) -> str:
         reason = f"columns are separated by {_SEPARATORS[self.separator]}"

@@ -29,7 +29,7 @@ class Curves:
     def __call__(self, contacts: list) -> tuple[np.ndarray, dict[int, str], list[Placed]]:
         """Return ``NAMES`` of contacts (contacts, names), why some failed, and their warnings."""
         values, reasons = np.full((len(contacts), len(NAMES)), np.nan), {}
-        told: list[Placed] = []
+        warned: list[Placed] = []
         for i, contact in enumerate(contacts):
             found: list[AccuracyWarning] = []
             try:
@@ -37,8 +37,8 @@ class Curves:
                     values[i] = self._scalars(contact)
             except DivergedError as error:
                 reasons[i] = str(error)
-            told += [(i, each) for each in keep_worst(found)]
-        return values, reasons, told
+            warned += [(i, each) for each in keep_worst(found)]
+        return values, reasons, warned
 
     def _scalars(self, contact) -> list[float]:
         imaging, options = self.imaging, {"solver": self.solver, "tolerance": self.tolerance}

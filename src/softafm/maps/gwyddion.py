@@ -69,11 +69,13 @@ def export_gwyddion(result: "Dataset", path: str | Path, *, overwrite: bool = Fa
             content[f"/{number}/mask"] = channel(missing, "")
         if variable.attrs.get("units") == "m":
             content[f"/{number}/base/palette"] = _GOLD
-        told = {
+        texts = {
             "long_name": variable.attrs.get("long_name", name),
             **{key: str(result.attrs.get(key, "")) for key in _META},
         }
-        content[f"/{number}/meta"] = GwyContainer({key: text for key, text in told.items() if text})
+        content[f"/{number}/meta"] = GwyContainer(
+            {key: text for key, text in texts.items() if text}
+        )
     write_whole(path, overwrite, content.tofile)
 
 

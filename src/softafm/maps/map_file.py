@@ -1,4 +1,4 @@
-"""Map files: TOML that tells what lies where on a sample, and how it is imaged."""
+"""Map files: TOML that states what lies where on a sample, and how it is imaged."""
 
 import re
 from collections.abc import Callable, Mapping, Sequence
@@ -95,7 +95,7 @@ def load_map(path: str | Path, overrides: Sequence[str] = ()) -> MapExperiment:
 
 
 def build_map(document: Mapping[str, Any], folder: Path) -> MapExperiment:
-    """Build the map that a file's tables describe; images are sought in ``folder``.
+    """Build the map that a file's tables describe; its images are in ``folder``.
 
     Raises
     ------
@@ -168,7 +168,7 @@ def _refuse_flow(mode: str, materials: Sequence[Any]) -> None:
             raise ConfigError(
                 [
                     f"map.materials[{index}].sample: '{each.sample.kind}' flows, so that the tip "
-                    "sinks deeper with every tap; take mode = 'force-volume', or another sample"
+                    "sinks deeper with every tap; use mode = 'force-volume', or another sample"
                 ]
             )
 

@@ -129,7 +129,7 @@ class MapTable(Table):
         try:
             mixed = SampleMap.mixed(share, one, other, self.size)
         except ValueError as error:
-            reason = str(error).replace("give labels", "take the pattern 'labels'")
+            reason = str(error).replace("give labels", "use the pattern 'labels'")
             raise ConfigError([f"map.materials: {reason}"]) from None
         height = mixed.height if self.height is None else self.height
         return replace(mixed, fields={**mixed.fields, **(self.fields or {})}, height=height)
@@ -261,4 +261,4 @@ def _read_array(path: Path) -> np.ndarray:
     except OSError as error:
         raise ValueError(error.strerror or "cannot be read") from None
     except (ValueError, EOFError):
-        raise ValueError("is no array that NumPy saved") from None
+        raise ValueError("is not an array that NumPy saved") from None

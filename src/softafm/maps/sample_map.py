@@ -72,7 +72,7 @@ class SampleMap:
         if any(each.tip != materials[0].tip for each in materials):
             raise ValueError("materials: must all have the same tip, as one tip scans them")
         if self.labels is None and len(materials) > 1:
-            raise ValueError(f"labels: missing; must tell which of {len(materials)} materials")
+            raise ValueError(f"labels: missing; must say which of {len(materials)} materials")
         arrays = {name: _check_image(name, values) for name, values in dict(self.fields).items()}
         if self.labels is not None:
             arrays["labels"] = _check_image("labels", self.labels)

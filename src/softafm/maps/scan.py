@@ -100,10 +100,10 @@ def scan(
     for i, contact in enumerate(contacts):
         _call_at_pixel(sample, i, refuse, contact)
     with reporting(progress) as report:
-        names, values, failures, told, done = take(
+        names, values, failures, doubts, done = take(
             sample, contacts, imaging, solver, tolerance, workers, report
         )
-    warned = _collect_warnings(failures, told, sample)
+    warned = _collect_warnings(failures, doubts, sample)
     for warning in warned:
         warnings.warn(warning, stacklevel=2)
     result = _assemble(sample, imaging, solver, tolerance, names, values, warned, done)
@@ -153,9 +153,9 @@ def _tap_map(sample, contacts, imaging, solver, tolerance, workers, report):
         for row, each in enumerate(taken)
         for column, reason in each.reasons.items()
     ]
-    told = [placed for each in [column, *taken] for placed in each.told]
+    doubts = [placed for each in [column, *taken] for placed in each.warned]
     taps = column.taps + sum(each.taps for each in taken)
-    return tapped_lines.NAMES, values, failures, told, {"taps": taps}
+    return tapped_lines.NAMES, values, failures, doubts, {"taps": taps}
 
 
 def _tap_line(setpoint, task) -> tapped_lines.Taken:
@@ -180,12 +180,12 @@ def _take_curves(sample, contacts, imaging, solver, tolerance, workers, report):
         [int(i), int(j), reasons[int(number[i, j])]]
         for i, j in np.argwhere(np.isin(number, list(reasons)))
     ]
-    told = [
+    doubts = [
         (task * _CURVES_A_TASK + i, each)
         for task, (_, _, warned) in enumerate(taken)
         for i, each in warned
     ]
-    return curve_pixels.NAMES, table[number], failures, told, {"curves": len(contacts)}
+    return curve_pixels.NAMES, table[number], failures, doubts, {"curves": len(contacts)}
 
 
 def _run_each(function: Callable, tasks: list, workers: int, report, noun: str) -> Iterator[Any]:
@@ -212,7 +212,7 @@ def _run_each(function: Callable, tasks: list, workers: int, report, noun: str) 
         ) from None
 
 
-def _collect_warnings(failures, told: list[Placed], sample: SampleMap) -> list[AccuracyWarning]:
+def _collect_warnings(failures, doubts: list[Placed], sample: SampleMap) -> list[AccuracyWarning]:
     """What to warn of: pixels without a result, and what solvers said."""
     number = sample.pixels.number
 
@@ -228,7 +228,7 @@ def _collect_warnings(failures, told: list[Placed], sample: SampleMap) -> list[A
             f"({i}, {j}): {reason}"
         )
         failed = [AccuracyWarning(text, len(failures))]
-    return [*failed, *gather(told, len(sample.pixels.contacts), "different pixels", where)]
+    return [*failed, *gather(doubts, len(sample.pixels.contacts), "different pixels", where)]
 
 
 def _assemble(sample, imaging, solver, tolerance, names, values, warned, done) -> "Dataset":

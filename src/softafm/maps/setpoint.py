@@ -69,7 +69,7 @@ class Setpoint:
     ----------
     taps
         Taps that were run.
-    told
+    warned
         What the solver and ``doubt`` warned of since it was emptied.
     """
 
@@ -79,12 +79,12 @@ class Setpoint:
     solver: Any
     tolerance: float
     taps: int = 0
-    told: list[AccuracyWarning] = field(default_factory=list)
+    warned: list[AccuracyWarning] = field(default_factory=list)
 
     def tap(self, contact, approach: float, amplitude: float | None = None) -> np.ndarray:
         """``OBSERVABLES`` of a steady tap of a closest approach, m."""
         amplitude = self.amplitude if amplitude is None else amplitude
-        with collect_warnings(self.told):
+        with collect_warnings(self.warned):
             motion = Sine(amplitude + approach, amplitude, self.frequency, "steady")
             history = self.solver.solve(contact, motion, tolerance=self.tolerance)
         self.taps += 1
@@ -96,9 +96,9 @@ class Setpoint:
         return float(self.drive.excess(self.amplitude, values[0], values[1]))
 
     def doubt(self, point: Point) -> None:
-        """Keep among what is told that the lever does not move as a sine, if so."""
+        """Add a warning if the lever does not move as a sine."""
         if (doubtful := doubt_sine(self.drive, self.amplitude, *point.values[:2])) is not None:
-            self.told.append(doubtful)
+            self.warned.append(doubtful)
 
     def phase(self, values) -> float:
         """Lag of the deflection behind the drive, degrees."""

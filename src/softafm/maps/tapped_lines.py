@@ -3,7 +3,7 @@
 The tip engages on the first pixel and goes down the first column; from there it goes along every
 line. So lines do not depend on each other, and numbers neither on the order of lines nor on how
 many are computed at a time. The branch is that of the pixel before while it exists; where the
-numerical search starts is told by the solutions known of that branch, those of the first column,
+numerical search starts follows from the known solutions on that branch, those of the first column,
 of a few lines that are taken before all others, and of the line.
 """
 
@@ -44,7 +44,7 @@ class Known:
     solved: dict[tuple[int, int], Point | str] = field(default_factory=dict)
     bases: dict[tuple[int, int], list[tuple[np.ndarray, Point]]] = field(default_factory=dict)
     gone: dict[tuple[int, int], list[np.ndarray]] = field(default_factory=dict)
-    """Places at which a branch was sought and is not, by label and branch."""
+    """Places where a branch was searched for and not found, by label and branch."""
 
     def copy(self) -> "Known":
         """Return the same, to be added to."""
@@ -97,7 +97,7 @@ class Taken:
 
     values: np.ndarray
     reasons: dict[int, str]
-    told: list[Placed]
+    warned: list[Placed]
     taps: int
 
 
@@ -111,17 +111,17 @@ def make_setpoint(imaging: AmplitudeModulation, solver, tolerance: float) -> Set
 def walk(setpoint: Setpoint, spots: list[Spot], branch: int, known: Known) -> Taken:
     """Take pixels one after the other; ``known`` is added to."""
     started, reasons = setpoint.taps, {}
-    told: list[Placed] = []
+    warned: list[Placed] = []
     values = np.full((len(spots), len(NAMES)), np.nan)
     last: Point | None = None
     for i, spot in enumerate(spots):
         key = spot.number, branch
         if key not in known.solved:
-            setpoint.told.clear()
+            setpoint.warned.clear()
             known.solved[key] = _solve(setpoint, spot, branch, known, last)
             if isinstance(point := known.solved[key], Point):
                 setpoint.doubt(point)
-            told += [(spot.number, each) for each in keep_worst(setpoint.told)]
+            warned += [(spot.number, each) for each in keep_worst(setpoint.warned)]
         found = known.solved[key]
         if isinstance(found, str):
             reasons[i] = found
@@ -129,7 +129,7 @@ def walk(setpoint: Setpoint, spots: list[Spot], branch: int, known: Known) -> Ta
         last, branch = found, found.branch
         height = setpoint.amplitude + found.approach
         values[i] = [height, setpoint.phase(found.values), branch, *found.values]
-    return Taken(values, reasons, told, setpoint.taps - started)
+    return Taken(values, reasons, warned, setpoint.taps - started)
 
 
 def _solve(setpoint, spot: Spot, branch: int, known: Known, last: Point | None) -> Point | str:

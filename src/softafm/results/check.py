@@ -1,6 +1,6 @@
 """Whether what a file holds is a result that figures, tables and exports can be made of.
 
-Everything behind ``softafm.load`` relies on what is checked here, and checks none of it again.
+Everything behind ``softafm.load`` relies on these checks and does not repeat them.
 """
 
 import json
@@ -151,12 +151,12 @@ def _refuse_variable(
     """Refuse a variable that a mode needs and has otherwise."""
     found, values, _ = variables[name]
     if tuple(found) != dimensions:
-        told = ", ".join(dimensions)
-        raise ValueError(f"variable '{name}' is over ({', '.join(found)}): must be over ({told})")
+        wanted = ", ".join(dimensions)
+        raise ValueError(f"variable '{name}' is over ({', '.join(found)}): must be over ({wanted})")
     least, most = SAMPLES.get(name, (0, values.size))
     if not least <= values.size <= most:
-        told = f"must have {least} to {most}"
-        raise ValueError(f"variable '{name}' has {values.size} values: {told}")
+        wanted = f"must have {least} to {most}"
+        raise ValueError(f"variable '{name}' has {values.size} values: {wanted}")
     if name == "branch" and dimensions == ("branch",):
         if sorted(map(str, values)) != sorted(BRANCHES):
             raise ValueError(f"variable 'branch' must hold {one_of(BRANCHES)}, each once")

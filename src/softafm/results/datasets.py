@@ -310,7 +310,7 @@ def export(result: "Dataset", path: str | Path, *, overwrite: bool = False) -> N
         save(result, path, overwrite=overwrite)
     elif suffix == ".csv":
         if {"x", "y"} <= set(result.dims):
-            raise ValueError(f"{path}: maps have no CSV; take .h5, or export_gwyddion")
+            raise ValueError(f"{path}: maps have no CSV; use .h5, or export_gwyddion")
         if not _curve_dimension(result) or "experiment" not in result.attrs:
             raise ValueError(f"{path}: the dataset is not a result of softafm, so it has no curve")
         write_whole(path, overwrite, lambda part: _write_csv(result, part))
@@ -334,7 +334,7 @@ def _write_csv(result, path):
     header = [f"{v.name} = {float(v):.9g} {v.units}" for v in scalars]
     header += [f"experiment = {result.attrs['experiment']}"]
     names = [f"{v.name} ({v.units})" for v in curves]
-    # To the last digit: steps of a fall may be closer than nine digits tell apart.
+    # To the last digit: steps of a fall may be closer than nine digits can resolve.
     rows = np.column_stack(curves).tolist()
     with open(path, "w", encoding="utf-8") as out:
         out.writelines(f"# {line}\n" for line in header)

@@ -134,7 +134,7 @@ def _is_dimension(dataset: h5py.Dataset) -> bool:
 
 
 def _is_no_variable(dataset: h5py.Dataset) -> bool:
-    """Whether it only tells how long a dimension is."""
+    """Whether it only states the length of a dimension."""
     return _is_dimension(dataset) and _read_hidden_text(dataset, "NAME").startswith(_NO_VARIABLE)
 
 

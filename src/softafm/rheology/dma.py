@@ -38,7 +38,7 @@ def warn_of_misfit(sample: Any, frequency: ArrayLike, storage: ArrayLike, loss: 
     name, value = ("storage", "loss")[which], data[1 + which][i]
     warnings.warn(
         f"the sample differs from the measured moduli by up to {100 * largest:.2g} %, in the "
-        f"{name} of {value:.4g} Pa at {data[0][i]:.4g} Hz ({100 * rms:.2g} % in the mean square): "
+        f"{name} of {value:.4g} Pa at {data[0][i]:.4g} Hz ({100 * rms:.2g} % root mean square): "
         "look at both with plot_rheology(sample, data=...), and leave out points that are wrong",
         AccuracyWarning,
         stacklevel=3,

@@ -13,7 +13,7 @@ from softafm.compiled.formulas import Term
 
 _GAPS = np.geomspace(1e-12, 1e-6, 6001)
 _OUTWARDS = np.geomspace(1e-3, 1e2, 4001)
-"""Distances beyond the largest tension at which its slope is sought, in ranges."""
+"""Distances beyond the largest tension at which its slope is searched for, in ranges."""
 _STEEPEST = 1.220535
 """max p' over max(−p)/z0 of a Lennard-Jones law beyond its largest tension."""
 

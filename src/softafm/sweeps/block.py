@@ -55,7 +55,7 @@ class Work:
 
     def carry(self, block: Block, place: int, point: Any) -> None:
         """Do one run of a block, and note what it gives there, or the reason why it does not."""
-        with warnings.catch_warnings(record=True) as told:
+        with warnings.catch_warnings(record=True) as warned:
             warnings.simplefilter("ignore")
             warnings.simplefilter("always", AccuracyWarning)
             try:
@@ -66,9 +66,9 @@ class Work:
                 return
         for name, value in found.items():
             block.values[name][place] = value
-        block.state[place] = WARNED if told else DONE
-        if told:
-            doubts = [each.message for each in told if isinstance(each.message, AccuracyWarning)]
+        block.state[place] = WARNED if warned else DONE
+        if warned:
+            doubts = [each.message for each in warned if isinstance(each.message, AccuracyWarning)]
             texts = map(str, keep_worst(doubts))
             block.warnings[place] = "; ".join(map(join_lines, texts))
 

@@ -126,8 +126,8 @@ def _reuse_contact(contact: Contact) -> Contact:
 
 def _reuse_table(name: str, document: Mapping[str, Any], mode: Mode | None, folder: Path) -> Any:
     """Return what a table describes, the same object for equal tables; it warns each time."""
-    thing, told = _build_table(name, json.dumps(document.get(name)), mode, folder)
-    for text in told:
+    thing, warned = _build_table(name, json.dumps(document.get(name)), mode, folder)
+    for text in warned:
         warnings.warn(text, AccuracyWarning, stacklevel=2)
     return thing
 
@@ -137,10 +137,10 @@ def _build_table(
     name: str, written: str, mode: Mode | None, folder: Path
 ) -> tuple[Any, tuple[str, ...]]:
     content = json.loads(written)
-    with warnings.catch_warnings(record=True) as told:
+    with warnings.catch_warnings(record=True) as warned:
         warnings.simplefilter("always", AccuracyWarning)
         thing = build_table(name, {} if content is None else {name: content}, mode, folder)
-    return thing, tuple(str(warning.message) for warning in told)
+    return thing, tuple(str(warning.message) for warning in warned)
 
 
 @lru_cache(maxsize=64)
@@ -198,7 +198,7 @@ def _refuse_unknown(observed: Sequence[Any], known: Sequence[str]) -> None:
         if not isinstance(name, str) or name not in known:
             raise ConfigError([f"sweep.observables = {shown(name)}: {nearest(name, known)}"])
         if list(observed).count(name) > 1:
-            raise ConfigError([f"sweep.observables: '{name}' is there twice; leave one out"])
+            raise ConfigError([f"sweep.observables: '{name}' is listed twice; leave one out"])
 
 
 def _refuse_axes(design: Design, axes: Axes) -> None:

@@ -129,7 +129,7 @@ def make_design(
     groups = [key if isinstance(key, tuple) else (key,) for key in vary]
     paths = [path for group in groups for path in group]
     problems = [
-        f"sweep.vary.'{path}': is there twice; leave one out"
+        f"sweep.vary.'{path}': is listed twice; leave one out"
         for path in dict.fromkeys(paths)
         if paths.count(path) > 1
     ]
@@ -165,8 +165,8 @@ def _check_samples(kind: str, samples: int | None) -> int:
     if kind == "grid":
         if samples is not None:
             raise ValueError(
-                f"sweep.samples = {shown(samples)}: of no use in a grid; leave it out, or choose "
-                f"the design {one_of(DESIGNS[1:])}"
+                f"sweep.samples = {shown(samples)}: has no effect in a grid; leave it out, or "
+                f"choose the design {one_of(DESIGNS[1:])}"
             )
         return 0
     if samples is None:
@@ -199,9 +199,9 @@ def _read_group(group: tuple[str, ...], written: Any, field, grid: bool) -> list
     columns = [_read_column(path, w, field, True) for path, w in zip(group, written, strict=True)]
     sizes = [len(values) for _, values in columns]
     if len(set(sizes)) > 1:
-        told = ", ".join(f"'{p}' has {n}" for p, n in zip(group, sizes, strict=True))
+        words = ", ".join(f"'{p}' has {n}" for p, n in zip(group, sizes, strict=True))
         raise ConfigError(
-            [f"sweep.vary.'{together}': {told} values; what varies together has equally many"]
+            [f"sweep.vary.'{together}': {words} values; those varied together need equally many"]
         )
     return columns
 
@@ -261,7 +261,7 @@ def _read_range(field: Field, written: Between | Mapping, grid: bool) -> Any:
              "number, or choose a random design"]
         )  # fmt: skip
     if not grid and points is not None:
-        raise ConfigError([f"{path}.points: of no use in a random design; leave it out"])
+        raise ConfigError([f"{path}.points: has no effect in a random design; leave it out"])
     ends = []
     for key, end in (("from", low), ("to", high)):
         try:

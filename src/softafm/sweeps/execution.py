@@ -143,7 +143,7 @@ def _carry_out_by(
             except KilledWorker:
                 task.losses += 1
                 if task.losses > _MOST_LOSSES:
-                    raise Halted("workers are lost again and again; see their logs") from None
+                    raise Halted("workers keep getting lost; see their logs") from None
                 if unpacked.status == "error":  # one was lost while it unpacked
                     unpacked = client.submit(_unpack, pickled, _list_versions(), pure=False)
                 send(task)
@@ -156,7 +156,7 @@ def _carry_out_by(
             del future
             keep(task.number, block)
     except (CancelledError, CommClosedError, StopIteration):
-        raise Halted("the scheduler is gone, or was told to drop the work") from None
+        raise Halted("the scheduler is gone, or has dropped the work") from None
 
 
 def _count_in_flight(client: "Client") -> int:
@@ -195,7 +195,7 @@ def _connect(scheduler: str | None, workers: int | None) -> Iterator["Client"]:
         try:
             if scheduler is None:
                 if getattr(multiprocessing.current_process(), "_inheriting", False):
-                    sys.exit(1)  # a worker that reads the script that starts it: that one tells
+                    sys.exit(1)  # a worker that runs the script which starts it, which reports it
                 folder = stack.enter_context(tempfile.TemporaryDirectory(prefix="softafm-"))
                 scheduler = stack.enter_context(
                     LocalCluster(
@@ -222,7 +222,7 @@ def _connect(scheduler: str | None, workers: int | None) -> Iterator["Client"]:
 
 @contextmanager
 def _silence() -> Iterator[None]:
-    """Keep what Dask logs and warns of from the user, who is told all that matters by us."""
+    """Hide Dask's logs and warnings from the user: we report all that matters."""
     loggers = [logging.getLogger(name) for name in _LOGGERS]
     levels = [logger.level for logger in loggers]
     with warnings.catch_warnings():

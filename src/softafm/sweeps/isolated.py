@@ -57,7 +57,7 @@ def _carry_on(work: Work, points: Sequence[Any], block: Block, first: int) -> in
             code = process.wait()
             if not began:
                 raise RuntimeError(
-                    f"a process for runs of their own could not start (exit code {code})"
+                    f"a process for single runs could not start (exit code {code})"
                 ) from None
             if place < len(points):
                 fail(block, place, f"the run ended its process: {_describe_ending(code)}")

@@ -26,9 +26,9 @@ class Status:
     runs, done, failed, warned
         Number of all runs, of those done, and of those among them that failed or warned.
     running
-        Whether a process is at work on it.
+        Whether a process is using it.
     rate
-        Runs done in a second, of late; None if none were.
+        Runs done per second recently; None if none were.
     example
         Where and why the first run failed, or None.
     """
@@ -53,7 +53,7 @@ def read_status(path: str | Path) -> Status:
     Raises
     ------
     ValueError
-        If it is no store of a sweep.
+        If it is not the store of a sweep.
     """
     store = Store(Path(path))
     counts = np.zeros(4, int)
@@ -110,15 +110,15 @@ def describe_duration(seconds: float) -> str:
 
 def tabulate(found: Status) -> "Table":
     """Return a table of it for people."""
-    word = "running" if found.running else "stopped; --resume goes on with it"
+    word = "running" if found.running else "stopped; --resume continues it"
     word = "finished" if found.done == found.runs else word
-    told = make_table(f"sweep, {word}")
+    rows = make_table(f"sweep, {word}")
     share = 100 * found.done / found.runs
-    told.add_row("done", f"{found.done} of {found.runs}", f"runs, {share:.3g} %")
-    told.add_row("failed", str(found.failed), found.example or "")
-    told.add_row("warned", str(found.warned), "done, with doubts about their accuracy")
+    rows.add_row("done", f"{found.done} of {found.runs}", f"runs, {share:.3g} %")
+    rows.add_row("failed", str(found.failed), found.example or "")
+    rows.add_row("warned", str(found.warned), "done, with doubts about their accuracy")
     if found.rate is not None:
-        told.add_row("rate", f"{found.rate:.3g}", "runs a second, of late")
+        rows.add_row("rate", f"{found.rate:.3g}", "runs per second, recently")
         if found.seconds_left:
-            told.add_row("time left", describe_duration(found.seconds_left), "at this rate")
-    return told
+            rows.add_row("time left", describe_duration(found.seconds_left), "at this rate")
+    return rows

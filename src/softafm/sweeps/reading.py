@@ -97,7 +97,7 @@ def make_campaign(
         raise ConfigError(
             [
                 "sweep.vary: missing; add a table [sweep.vary] of fields and values ('softafm run' "
-                "takes an experiment without)"
+                "runs an experiment without it)"
             ]
         )
     if isinstance(table.observables, str):

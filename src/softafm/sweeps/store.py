@@ -71,15 +71,15 @@ class Store:
     Raises
     ------
     StoreError
-        If it is no store of a sweep.
+        If it is not the store of a sweep.
     """
 
     def __init__(self, path: Path):
         self.path = Path(path)
-        self.attributes, self._arrays, self._told = read_metadata(self.path)
+        self.attributes, self._arrays, self._described = read_metadata(self.path)
         self.shape = tuple(self._arrays["state"]["shape"])
         self.block = tuple(self._arrays["state"]["chunks"])
-        self.dimensions = tuple(self._told["state"]["_ARRAY_DIMENSIONS"])
+        self.dimensions = tuple(self._described["state"]["_ARRAY_DIMENSIONS"])
         self._observables = self.attributes["observables"]
 
     @property
@@ -205,10 +205,12 @@ class Store:
             )
         found = {}
         over_runs = (*self._observables, *RESERVED)
-        for name in sorted(self._told, key=lambda name: name not in over_runs):
-            told = self._told[name]
-            described = {key: each for key, each in told.items() if key != "_ARRAY_DIMENSIONS"}
-            found[name] = (told["_ARRAY_DIMENSIONS"], self._load_array(name), described)
+        for name in sorted(self._described, key=lambda name: name not in over_runs):
+            attributes = self._described[name]
+            described = {
+                key: each for key, each in attributes.items() if key != "_ARRAY_DIMENSIONS"
+            }
+            found[name] = (attributes["_ARRAY_DIMENSIONS"], self._load_array(name), described)
         return found
 
     def _load_array(self, name: str) -> np.ndarray:
@@ -262,7 +264,7 @@ class Store:
         """Keep other processes from writing meanwhile; Busy if one does already."""
         with open(self._lock, "ab") as lock:
             if not _try_lock(lock):
-                raise Busy(f"{self.path}: another process is at work on it")
+                raise Busy(f"{self.path}: another process is using it")
             for part in self.path.glob("*/*.part"):  # of a process that was killed
                 part.unlink()
             yield
@@ -372,11 +374,11 @@ def _fill(path: Path, campaign: Campaign, block: tuple[int, ...]) -> None:
     }
     metadata: dict[str, Any] = {".zgroup": {"zarr_format": 2}, ".zattrs": attributes}
     chunks: dict[str, bytes] = {}
-    for name, (dimensions, values, told) in campaign.coordinates.items():
+    for name, (dimensions, values, described) in campaign.coordinates.items():
         array = np.ascontiguousarray(values)
         array = array.astype(array.dtype.newbyteorder("<"))
         metadata |= _describe_array(
-            name, dimensions, array.shape, array.shape, array.dtype.str, told
+            name, dimensions, array.shape, array.shape, array.dtype.str, described
         )
         chunks[f"{name}/{'.'.join('0' * array.ndim)}"] = _CODEC.encode(array)
     over = (campaign.dimensions, campaign.shape, block)
@@ -397,19 +399,19 @@ def _fill(path: Path, campaign: Campaign, block: tuple[int, ...]) -> None:
 
 
 def _write_observable(observable: Observable, dimensions, shape, block) -> dict[str, Any]:
-    told = {"units": observable.unit, "long_name": observable.long_name}
+    attributes = {"units": observable.unit, "long_name": observable.long_name}
     return _describe_array(
         observable.name,
         (*dimensions, *observable.dimensions),
         (*shape, *observable.shape),
         (*block, *observable.shape),
         "<f8",
-        {key: text for key, text in told.items() if text},
+        {key: text for key, text in attributes.items() if text},
     )
 
 
 def _describe_array(
-    name, dimensions, shape, chunks, dtype: str, told: Mapping[str, Any]
+    name, dimensions, shape, chunks, dtype: str, attributes: Mapping[str, Any]
 ) -> dict[str, Any]:
     """Return the metadata of an array, with its attributes."""
     floats = dtype == "<f8"
@@ -425,7 +427,7 @@ def _describe_array(
             # Whatever else is filled in by a number would be masked with NaN by xarray.
             "fill_value": "NaN" if floats else None,
         },
-        f"{name}/.zattrs": {"_ARRAY_DIMENSIONS": list(dimensions), **told},
+        f"{name}/.zattrs": {"_ARRAY_DIMENSIONS": list(dimensions), **attributes},
     }
 
 
@@ -449,7 +451,7 @@ def describe_difference(store: Store, campaign: Campaign) -> str | None:
     values = json.loads(store.attributes["values"])
     for name, digest in _hash_coordinates(campaign).items():
         if found is None and values.get(name) != digest:
-            found = f"the values of {name} were others"
+            found = f"the values of {name} were different"
     return found
 
 

@@ -19,7 +19,7 @@ _LARGEST_TEXT = 50_000_000
 _MOST_RUNS, _MOST_BLOCKS, _MOST_IN_BLOCK = 10**9, 10**7, 10**7
 _MOST_ARRAYS, _MOST_DIMENSIONS = 1000, 16
 _NUMBERS = re.compile(r"[<|][fiub][1248]|<U\d{1,4}")
-_TOLD = ("_ARRAY_DIMENSIONS", "units", "long_name", "flag_values", "flag_meanings")
+_ATTRIBUTES = ("_ARRAY_DIMENSIONS", "units", "long_name", "flag_values", "flag_meanings")
 
 
 class StoreError(ValueError):
@@ -31,7 +31,7 @@ class Metadata(NamedTuple):
 
     attributes: dict[str, Any]
     arrays: dict[str, dict[str, Any]]
-    told: dict[str, dict[str, Any]]
+    described: dict[str, dict[str, Any]]
 
 
 def read_metadata(path: Path) -> Metadata:
@@ -40,30 +40,30 @@ def read_metadata(path: Path) -> Metadata:
     Raises
     ------
     StoreError
-        If it is no store of a sweep, is damaged, or is such as no sweep writes.
+        If it is not the store of a sweep, is damaged, or is such as no sweep writes.
     """
     try:
         return _collect_metadata(path)
     except StoreError as error:
         raise StoreError(f"{path}: {error}") from None
     except (OSError, ValueError, KeyError, TypeError, AttributeError, RecursionError):
-        raise StoreError(f"{path}: is no store of a sweep, or damaged") from None
+        raise StoreError(f"{path}: is not the store of a sweep, or is damaged") from None
 
 
 def _collect_metadata(path: Path) -> Metadata:
     if not path.exists():
         raise StoreError("no such store")
     if not all((path / name).is_file() for name in (".zattrs", ".zmetadata")):
-        raise StoreError("is no store of a sweep")
+        raise StoreError("is not the store of a sweep")
     attributes = _read_json(path / ".zattrs")
     found = _read_json(path / ".zmetadata")["metadata"]
     if attributes["format"] != FORMAT:
-        raise StoreError("is no store of a sweep")
+        raise StoreError("is not the store of a sweep")
     arrays = {key[:-8]: each for key, each in found.items() if key.endswith("/.zarray")}
-    told = {name: found[f"{name}/.zattrs"] for name in arrays}
-    _refuse(attributes, arrays, told)
+    described = {name: found[f"{name}/.zattrs"] for name in arrays}
+    _refuse(attributes, arrays, described)
     _refuse_links(path, arrays)
-    return Metadata(attributes, arrays, told)
+    return Metadata(attributes, arrays, described)
 
 
 def _read_json(file: Path) -> dict[str, Any]:
@@ -76,7 +76,7 @@ def _read_json(file: Path) -> dict[str, Any]:
 
 
 def _refuse(
-    attributes: Mapping[str, Any], arrays: Mapping[str, Any], told: Mapping[str, Any]
+    attributes: Mapping[str, Any], arrays: Mapping[str, Any], described: Mapping[str, Any]
 ) -> None:
     if len(arrays) > _MOST_ARRAYS:
         raise StoreError(f"has {len(arrays)} arrays: at most {_MOST_ARRAYS}")
@@ -84,11 +84,11 @@ def _refuse(
         if not isinstance(json.loads(attributes[key]), dict):
             raise StoreError(f"its {key} are no table")
     for name, array in arrays.items():
-        _refuse_array(name, array, told[name])
+        _refuse_array(name, array, described[name])
     shape, block = arrays["state"]["shape"], arrays["state"]["chunks"]
     runs, blocks = prod(shape), prod(map(_count_blocks, shape, block))
     if not shape or not 0 < runs <= _MOST_RUNS or blocks > _MOST_BLOCKS:
-        raise StoreError(f"is of an absurd shape, {shape}")
+        raise StoreError(f"has an absurd shape, {shape}")
     if prod(block) > _MOST_IN_BLOCK:
         raise StoreError(f"has blocks of {prod(block)} runs: at most {_MOST_IN_BLOCK}")
     kinds = {"state": "|u1", "reason": "|O", "warning": "|O"}
@@ -102,14 +102,14 @@ def _refuse(
             raise StoreError(f"its array '{name}' is not of the type or shape of its runs")
     for name, array in arrays.items():
         if name not in kinds and array["chunks"] != array["shape"]:
-            raise StoreError(f"its coordinate '{name}' is in parts")
+            raise StoreError(f"its coordinate '{name}' is split into parts")
 
 
 def _count_blocks(size: int, block: int) -> int:
     return ceil(size / block)
 
 
-def _refuse_array(name: str, array: Mapping[str, Any], told: Mapping[str, Any]) -> None:
+def _refuse_array(name: str, array: Mapping[str, Any], attributes: Mapping[str, Any]) -> None:
     if not name.isprintable() or name.startswith(".") or re.search(r"[/\\:]", name):
         raise StoreError(f"has an array named {shown(name)}")
     shape, chunks = array["shape"], array["chunks"]
@@ -124,11 +124,15 @@ def _refuse_array(name: str, array: Mapping[str, Any], told: Mapping[str, Any]) 
     plain = array["zarr_format"] == 2 and array["order"] == "C"
     if not known or not packed or not plain or array.get("dimension_separator", ".") != ".":
         raise StoreError(f"its array '{name}' is kept in a way that softafm does not write")
-    dimensions = told["_ARRAY_DIMENSIONS"]
+    dimensions = attributes["_ARRAY_DIMENSIONS"]
     named = len(dimensions) == len(shape) and all(isinstance(each, str) for each in dimensions)
-    words = [told.get(key, "") for key in ("units", "long_name", "flag_meanings")]
-    if not named or any(key not in _TOLD for key in told) or any(type(w) is not str for w in words):
-        raise StoreError(f"its array '{name}' is described as softafm does not")
+    words = [attributes.get(key, "") for key in ("units", "long_name", "flag_meanings")]
+    if (
+        not named
+        or any(key not in _ATTRIBUTES for key in attributes)
+        or any(type(w) is not str for w in words)
+    ):
+        raise StoreError(f"its array '{name}' is described in a way that softafm does not write")
     if " since " in words[0]:
         raise StoreError(f"its array '{name}' has the unit {shown(words[0])}")
 

@@ -88,7 +88,7 @@ def sweep(
     -------
     xarray.Dataset
         Observables over the varied parameters, of a sample over ``sample``; NaN where a run
-        failed. ``state`` tells 1 done, 2 failed or 3 done with a warning, ``reason`` and
+        failed. ``state`` is 1 done, 2 failed or 3 done with a warning, ``reason`` and
         ``warning`` the texts. It is read from the store as it is needed.
 
     Raises
@@ -226,8 +226,8 @@ def finish(
             if report is not None:
                 ready = store.size - left + done
                 seconds = (time() - begun) / done * (left - done)
-                told = f"{ready} of {store.size} runs" + (f", {failed} failed" if failed else "")
-                report(ready / store.size, f"{told}, {describe_duration(seconds)} left")
+                words = f"{ready} of {store.size} runs" + (f", {failed} failed" if failed else "")
+                report(ready / store.size, f"{words}, {describe_duration(seconds)} left")
 
         if missing and report is not None:
             report(1 - left / store.size, "workers start")
@@ -250,7 +250,7 @@ def _find_store(
         return store
     if there and not force:
         raise StoreError(
-            f"{path}: exists; choose another name, or add --resume to go on with it, or --force to "
+            f"{path}: exists; choose another name, or add --resume to continue it, or --force to "
             "replace it"
         )
     if there:
@@ -278,7 +278,7 @@ def load_sweep(path: str | Path) -> "Dataset":
     Raises
     ------
     ValueError
-        If it is no store of a sweep, or a part of it is damaged.
+        If it is not the store of a sweep, or a part of it is damaged.
     """
     from xarray import Dataset
 

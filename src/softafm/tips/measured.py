@@ -91,7 +91,7 @@ def _refuse_what_is_no_profile(r: tuple[float, ...], height: tuple[float, ...]) 
             raise ValueError(
                 f"height[{i}] = {height[i]:g} m at r = {r[i]:g} m: must not be below "
                 f"height[{i - 1}] = {height[i - 1]:g} m at r = {r[i - 1]:g} m (a tip may not turn "
-                "back towards the sample; average what is noise)"
+                "back towards the sample; average out noise)"
             )
     if height[-1] == height[0]:
         raise ValueError(f"height = {height[0]:g} m at all r: must rise with r")
