@@ -110,11 +110,11 @@ def test_a_version_installed_over_another_computes_its_own_results(tmp_path):
     package = with_probe(tmp_path / "source")
     found = []
     for version, change in (("0.1.0", lambda package: None), ("0.2.0", multiply_by_more)):
-        text = (package / "__init__.py").read_text().splitlines(keepends=True)
+        text = (package / "version.py").read_text().splitlines(keepends=True)
         text = [
             f'__version__ = "{version}"\n' if "__version__ =" in line else line for line in text
         ]
-        (package / "__init__.py").write_text("".join(text))
+        (package / "version.py").write_text("".join(text))
         change(package)
         wheel = write_wheel(package, version, tmp_path)
         pip = [sys.executable, "-m", "pip", "--quiet", "--disable-pip-version-check"]

@@ -1,7 +1,5 @@
 """Atomic force microscopy on soft, adhesive, viscoelastic surfaces from first principles."""
 
-__version__ = "0.2.0"
-
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
@@ -61,6 +59,7 @@ from softafm.tips import (
     Tip,
     read_tip_profile,
 )
+from softafm.version import __version__
 
 if TYPE_CHECKING:
     from softafm.draw.maps import plot_map

@@ -80,7 +80,7 @@ def _softafm(
     version: Annotated[bool, typer.Option("--version", help="Show the version.")] = False,
 ) -> None:
     if version:
-        from softafm import __version__
+        from softafm.version import __version__
 
         typer.echo(f"softafm {__version__}")
     elif context.invoked_subcommand is None:

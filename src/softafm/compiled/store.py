@@ -48,7 +48,7 @@ def name_build() -> str:
     import numba
     from llvmlite import binding
 
-    from softafm import __version__
+    from softafm.version import __version__
 
     parts = [__version__, sys.version, numba.__version__, llvmlite.__version__]
     parts += [binding.get_process_triple(), binding.get_host_cpu_name()]

@@ -2,8 +2,8 @@
 
 from softafm.modes import approach, force_distance, spectroscopy, tapping
 from softafm.modes.mode import MODES, Mode, register
-from softafm.modes.parts import Axes, Foreseen, Inputs, Layout, Row
-from softafm.modes.perform import Outcome, Settings, perform
+from softafm.modes.parts import Axes, Foreseen, Inputs, Layout, Outcome, Row, Settings
+from softafm.modes.perform import perform
 from softafm.modes.scales import Scales
 from softafm.results.content import Observable, observables
 

@@ -21,8 +21,8 @@ from softafm.instrument.motions import Sine
 from softafm.modes.amplitude_curve import BRANCHES, AmplitudeCurve, Solutions
 from softafm.modes.driven import AmplitudeSweep, deepest_tap, doubt_sine, drive_of, ratios_of
 from softafm.modes.mode import Mode
-from softafm.modes.parts import Axes, Foreseen, Inputs, Row
-from softafm.modes.perform import Outcome, Settings, perform
+from softafm.modes.parts import Axes, Foreseen, Inputs, Outcome, Row, Settings
+from softafm.modes.perform import perform
 from softafm.modes.scales import Scales, tap_scales
 from softafm.modes.start import refuse_tapped_flow, solver_of
 from softafm.modes.tap_map import OBSERVABLES, TapMap

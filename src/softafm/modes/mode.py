@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, Literal
 
 from softafm.checks.suggestions import call_also
 from softafm.checks.validate import one_of
-from softafm.modes.parts import Axes, Foreseen, Inputs, Layout
+from softafm.modes.parts import Axes, Foreseen, Inputs, Layout, Outcome, Settings
 from softafm.modes.scales import Scales, force_scales
 from softafm.results.content import HISTORY, Needed, Observable, declare, unit_of
 
@@ -16,7 +16,6 @@ if TYPE_CHECKING:
     from xarray import Dataset
 
     from softafm.contact import Contact
-    from softafm.modes.perform import Outcome, Settings
     from softafm.solvers.history import History
 
 Values = Mapping[str, Any]

@@ -4,6 +4,8 @@ from collections.abc import Callable, Mapping
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, NamedTuple
 
+from softafm.progress import Progress
+
 if TYPE_CHECKING:
     from softafm.contact import Contact
 
@@ -29,6 +31,31 @@ class Inputs(NamedTuple):
         """What takes part besides the contact, as results describe it."""
         lever = {} if self.cantilever is None else {"cantilever": self.cantilever}
         return {"motion": self.motion, **lever, **self.tables}
+
+
+class Settings(NamedTuple):
+    """How a run is to be carried out: the options of ``force_distance`` of these names."""
+
+    solver: Any = None
+    tolerance: float = 1e-2
+    profiles: bool = False
+    progress: bool | Progress | None = None
+
+
+class Outcome(NamedTuple):
+    """What a run gave.
+
+    ``parts`` are what took part besides the contact, by name, ``solver`` and ``tolerance`` those
+    that were used, and ``data`` and ``coordinates`` variables of the result, as (dims, values).
+    """
+
+    parts: Mapping[str, Any]
+    solver: Any
+    tolerance: float
+    data: dict[str, tuple]
+    coordinates: dict[str, tuple]
+    warnings: tuple[Warning, ...] = ()
+    diagnostics: Mapping[str, float] = MappingProxyType({})
 
 
 class Row(NamedTuple):

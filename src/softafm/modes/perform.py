@@ -3,14 +3,14 @@
 from collections.abc import Mapping
 from functools import partial
 from types import MappingProxyType
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any
 
 from softafm.checks.refusals import all_of
 from softafm.contact import Contact
 from softafm.instrument.cantilever import Cantilever
 from softafm.modes.check import compare_with_finer, finer_run
 from softafm.modes.mode import MODES, Mode
-from softafm.modes.parts import Inputs
+from softafm.modes.parts import Inputs, Outcome, Settings
 from softafm.modes.start import carry, refuse_other_than_cantilever, regularise_contact
 from softafm.progress import Progress
 from softafm.results.content import HISTORY
@@ -18,31 +18,6 @@ from softafm.results.datasets import dataset, history_variables, record_regulari
 
 if TYPE_CHECKING:
     from xarray import Dataset
-
-
-class Settings(NamedTuple):
-    """How a run is to be carried out: the options of ``force_distance`` of these names."""
-
-    solver: Any = None
-    tolerance: float = 1e-2
-    profiles: bool = False
-    progress: bool | Progress | None = None
-
-
-class Outcome(NamedTuple):
-    """What a run gave.
-
-    ``parts`` are what took part besides the contact, by name, ``solver`` and ``tolerance`` those
-    that were used, and ``data`` and ``coordinates`` variables of the result, as (dims, values).
-    """
-
-    parts: Mapping[str, Any]
-    solver: Any
-    tolerance: float
-    data: dict[str, tuple]
-    coordinates: dict[str, tuple]
-    warnings: tuple[Warning, ...] = ()
-    diagnostics: Mapping[str, float] = MappingProxyType({})
 
 
 def perform(

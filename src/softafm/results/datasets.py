@@ -13,12 +13,12 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-import softafm
 from softafm.checks.kinds import refuse_non_dataset
 from softafm.checks.paths import explain_no_file
 from softafm.results.content import FORMAT, HISTORY, LARGEST, PROFILES, variable
 from softafm.results.netcdf import make_file_content
 from softafm.solvers.history import History
+from softafm.version import __version__
 
 if TYPE_CHECKING:
     from xarray import Dataset, Variable
@@ -159,7 +159,7 @@ def _collect_provenance(mode, contact, parts, solver, tolerance, warnings, diagn
         "experiment": json.dumps({"mode": mode, **experiment}),
         "solver": json.dumps(describe(solver)),
         **({"tolerance": float(tolerance)} if solver.adaptive else {}),
-        "softafm_version": softafm.__version__,
+        "softafm_version": __version__,
         "created": datetime.now(UTC).isoformat(timespec="seconds"),
         "tabor_instantaneous": contact.tabor_instantaneous,
         "tabor_relaxed": contact.tabor_relaxed,

@@ -6,12 +6,11 @@ from softafm.surfaces.dlvo import DLVO
 from softafm.surfaces.dmt import DMT
 from softafm.surfaces.dugdale import Dugdale
 from softafm.surfaces.exponential import Exponential
-from softafm.surfaces.law import SurfaceLaw
+from softafm.surfaces.law import SumOfLaws, SurfaceLaw
 from softafm.surfaces.lennard_jones import LennardJones
 from softafm.surfaces.morse import Morse
 from softafm.surfaces.reading import read_law
 from softafm.surfaces.repulsion import Repulsion
-from softafm.surfaces.sum_of_laws import SumOfLaws
 from softafm.surfaces.tabulated import Tabulated
 from softafm.surfaces.van_der_waals import VanDerWaals
 

@@ -2,7 +2,8 @@
 
 from abc import ABC, abstractmethod
 from collections.abc import Callable
-from functools import cached_property
+from dataclasses import dataclass
+from functools import cached_property, reduce
 from math import inf, sqrt
 from typing import Any, ClassVar
 
@@ -35,8 +36,6 @@ class SurfaceLaw(ABC):
 
     def __add__(self, other: "SurfaceLaw") -> "SurfaceLaw":
         """Return the law whose pressure is the sum of both."""
-        from softafm.surfaces.sum_of_laws import SumOfLaws
-
         return SumOfLaws((self, other)) if isinstance(other, SurfaceLaw) else NotImplemented
 
     @property
@@ -177,6 +176,56 @@ class SurfaceLaw(ABC):
         gap = self._tension_gap
         inside = int(np.flatnonzero((gap > _GAPS) & (self._scanned >= 0))[-1])
         return _find_root(self.pressure, _GAPS[inside], min(gap, _GAPS[inside + 1]))
+
+
+@dataclass(frozen=True)
+class SumOfLaws(SurfaceLaw):
+    """The sum of the pressures of several laws, also written ``one + another``.
+
+    Parameters
+    ----------
+    parts
+        The laws; sums among them are taken apart. A part alone may be purely attractive, their sum
+        has to repel when the surfaces come close.
+
+    Raises
+    ------
+    ValueError
+        If a part is no surface law or there is none.
+    """
+
+    kind: ClassVar[str] = "sum"
+    parts: tuple[SurfaceLaw, ...]
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "parts", _check_laws(self.parts))
+
+    @property
+    def closest_gap(self) -> float:
+        """The largest of those of the parts, m."""
+        return max(part.closest_gap for part in self.parts)
+
+    @property
+    def terms(self) -> tuple[Term, ...]:
+        """The terms of all parts."""
+        return tuple(term for part in self.parts for term in part.terms)
+
+    def _evaluate(self, gap: ArrayLike) -> tuple[np.ndarray, ...]:
+        results = [part._evaluate(gap) for part in self.parts]
+        return tuple(reduce(np.add, parts) for parts in zip(*results, strict=True))
+
+
+def _check_laws(given: Any) -> tuple[SurfaceLaw, ...]:
+    if isinstance(given, str | bytes | dict) or not hasattr(given, "__iter__"):
+        raise ValueError(f"parts = {given!r}: must be a list of surface laws")
+    flat: list[SurfaceLaw] = []
+    for index, part in enumerate(given):
+        if not isinstance(part, SurfaceLaw):
+            raise ValueError(f"parts[{index}] = {part!r}: must be a surface law")
+        flat += part.parts if isinstance(part, SumOfLaws) else (part,)
+    if not flat:
+        raise ValueError("parts is empty: must hold at least one surface law")
+    return tuple(flat)
 
 
 def _find_root(function: Callable[[float], Any], low: float, high: float) -> float:

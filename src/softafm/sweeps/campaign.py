@@ -14,7 +14,6 @@ from typing import Any
 
 import numpy as np
 
-import softafm
 from softafm.checks.refusals import ConfigError, nearest, shown
 from softafm.contact import Contact
 from softafm.errors import AccuracyWarning
@@ -23,6 +22,7 @@ from softafm.experiment.fields import Keys, keys_of, replaced
 from softafm.modes import MODES, Axes, Mode
 from softafm.results.content import VARIABLES
 from softafm.sweeps.designs import Design
+from softafm.version import __version__
 
 Coordinate = tuple[tuple[str, ...], np.ndarray, Mapping[str, str]]
 """Dimensions, values and attributes."""
@@ -185,7 +185,7 @@ def plan_experiments(
             "experiment": document,
             "files": _hash_files(document, folder),
             "observables": list(observed),
-            "softafm_version": softafm.__version__,
+            "softafm_version": __version__,
         },
         seconds=float(np.mean(costs)),
     )
@@ -335,7 +335,7 @@ def plan_calls(
             "function": f"{getattr(function, '__module__', '')}.{name}",
             "source": _find_source(function),
             "observables": list(observed),
-            "softafm_version": softafm.__version__,
+            "softafm_version": __version__,
         },
         seconds=seconds,
     )

@@ -18,9 +18,9 @@ from dataclasses import dataclass
 from itertools import islice
 from typing import TYPE_CHECKING, Any
 
-import softafm
 from softafm.sweeps.block import Block, Work, join_lines
 from softafm.sweeps.isolated import carry_apart
+from softafm.version import __version__
 
 if TYPE_CHECKING:
     from distributed import Client
@@ -165,7 +165,7 @@ def _count_in_flight(client: "Client") -> int:
 
 
 def _list_versions() -> dict[str, str]:
-    return {"softafm": softafm.__version__, "Python": ".".join(map(str, sys.version_info[:2]))}
+    return {"softafm": __version__, "Python": ".".join(map(str, sys.version_info[:2]))}
 
 
 def _unpack(pickled: bytes, versions: dict[str, str]) -> Work:

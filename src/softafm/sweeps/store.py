@@ -19,12 +19,12 @@ from typing import Any
 
 import numpy as np
 
-import softafm
 from softafm.checks.refusals import shown
 from softafm.sweeps.block import DONE, FAILED, UNKNOWN, WARNED, Block
 from softafm.sweeps.campaign import Campaign, Observable
 from softafm.sweeps.extra import require
 from softafm.sweeps.store_check import FORMAT, StoreError, read_metadata
+from softafm.version import __version__
 
 require("zarr", "numcodecs")
 from numcodecs import VLenUTF8, Zstd  # noqa: E402
@@ -366,7 +366,7 @@ def create(path: Path, campaign: Campaign, runs: int) -> Store:
 def _fill(path: Path, campaign: Campaign, block: tuple[int, ...]) -> None:
     attributes = {
         "format": FORMAT,
-        "softafm_version": softafm.__version__,
+        "softafm_version": __version__,
         "created": datetime.now(UTC).isoformat(timespec="seconds"),
         "campaign": json.dumps(campaign.identity),
         "values": json.dumps(_hash_coordinates(campaign)),
