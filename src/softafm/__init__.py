@@ -59,7 +59,7 @@ from softafm.tips import (
     Tip,
     read_tip_profile,
 )
-from softafm.version import __version__
+from softafm.version import __version__ as __version__
 
 if TYPE_CHECKING:
     from softafm.draw.maps import plot_map
