@@ -22,15 +22,19 @@ from softafm.solvers.energy.layout import (
     new_room,
 )
 from softafm.solvers.energy.memory import recall
-from softafm.solvers.energy.tuning import CLOSEST
+from softafm.solvers.energy.tuning import (
+    CLOSEST,
+    COARSER_THAN_NEEDED,
+    COARSEST_SPACING,
+    EQUILIBRIUM_ERROR,
+    EXTENT,
+    FINER_THAN_NEEDED,
+    GROWTH,
+    SLACK,
+    SLOWEST_GROWTH,
+    SPACING,
+)
 
-EXTENT = 8.0
-"""Radius of every mesh, in contact radii."""
-
-_COARSEST_SPACING = 0.3
-_SLACK = 3.0
-"""Fast Tabor number from which on the edge of a contact yields to small errors, such as those of a
-mesh that coarsens rapidly away from it."""
 _POINTS, _WEIGHTS = np.polynomial.legendre.leggauss(16)
 
 
@@ -66,14 +70,14 @@ class Surface:
         opens = 3 ** (1 / 6) * contact.reach if contact.adhesive else self.edge_gap
         self.open_gap = self.edge_gap + opens
         self.open_frame = contact.open_radius
-        self.accuracy = 1e-3 * strictness
+        self.accuracy = EQUILIBRIUM_ERROR * strictness
         sharpness = contact.surface.sharpness if contact.adhesive else 1.0
         tabor = contact.tabor_instantaneous if contact.adhesive else 0.0
-        slack = max(1.0, tabor / _SLACK)
+        slack = max(1.0, tabor / SLACK)
         finer = min(2.0, max(1.0, slack / 4))
-        self.target = 0.2 * strictness**0.2 / max(1.0, sharpness) / finer
-        self.growth = max(0.2, 0.3 * slack**-0.45) * min(1.0, strictness**0.17)
-        self.finest_level = max(0, ceil(log2(_COARSEST_SPACING / finest_spacing)))
+        self.target = SPACING * strictness**0.2 / max(1.0, sharpness) / finer
+        self.growth = max(SLOWEST_GROWTH, GROWTH * slack**-0.45) * min(1.0, strictness**0.17)
+        self.finest_level = max(0, ceil(log2(COARSEST_SPACING / finest_spacing)))
         self.level = self.first_level = self._level_for(0.4 * contact.open_width / self.open_frame)
         self.mesh = self._mesh(self.level)
         self.meshes, self.most_nodes = 1, self.mesh.nodes.size
@@ -91,11 +95,11 @@ class Surface:
         self.clock["force_scale"] = contact.force_scale
 
     def _mesh(self, level: int) -> Mesh:
-        return Mesh(*unit_mesh(_COARSEST_SPACING * 2.0**-level, self.growth, EXTENT))
+        return Mesh(*unit_mesh(COARSEST_SPACING * 2.0**-level, self.growth, EXTENT))
 
     def _level_for(self, spacing: float) -> int:
         """Level of the mesh whose edge spacing, in contact radii, is at most this."""
-        level = ceil(log2(_COARSEST_SPACING / spacing) - 1e-9)
+        level = ceil(log2(COARSEST_SPACING / spacing) - 1e-9)
         return min(max(level, 0), self.finest_level)
 
     @property
@@ -125,8 +129,11 @@ class Surface:
     @property
     def coarseness_allowed(self) -> tuple[float, float]:
         """Bounds of the coarseness within which the mesh is kept."""
-        finest = 0.35 * self.target if self.level > 0 else 0.0
-        return finest, 1.3 * self.target if self.level < self.finest_level else np.inf
+        finest = FINER_THAN_NEEDED * self.target if self.level > 0 else 0.0
+        return (
+            finest,
+            COARSER_THAN_NEEDED * self.target if self.level < self.finest_level else np.inf,
+        )
 
     def remesh(self, coarseness: float) -> None:
         """Carry all fields to the mesh that suits a cohesive zone seen ``coarseness`` from here."""
