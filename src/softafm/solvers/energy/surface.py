@@ -6,7 +6,8 @@ import numpy as np
 
 from softafm.errors import DivergedError
 from softafm.halfspace.mesh import unit_mesh
-from softafm.solvers.energy.equilibrium import descend, raise_tip, tip_force
+from softafm.solvers.energy.descent import descend
+from softafm.solvers.energy.equilibrium import raise_tip, tip_force
 from softafm.solvers.energy.frame import frame_for, radius_of_gap, transfer
 from softafm.solvers.energy.layout import (
     DEFORMATION,
