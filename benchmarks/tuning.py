@@ -1,8 +1,9 @@
 """What the constants of the default solver do: each doubled and halved, on the reference cases.
 
-Steps, Newton iterations and the largest error of the 28 prescribed cases of tests/data, with every
-constant of ``softafm.solvers.energy.tuning`` as it is, at half and at twice its value. Each runs in
-a process of its own, which compiles for some twenty seconds, into a folder that is removed.
+Steps, Newton iterations and the largest error (but of the indicative ldpe-tap-z0-0.1nm) of the
+prescribed cases of tests/data, with every constant of ``softafm.solvers.energy.tuning`` as it is,
+at half and at twice its value. Each runs in a process of its own. Those that stand in compiled code
+come last: they are compiled anew, for some twenty seconds, into a folder that is removed.
 
     python benchmarks/tuning.py [NAME...]
 """

@@ -235,3 +235,15 @@ def test_documents_install_a_copy_of_the_repository_as_it_is_not_published():
         assert all(target.startswith(".") for target in targets), name
     for name in ("README.md", "index.md", "page.md"):
         assert "not on PyPI" in texts[name]
+
+
+def test_a_lever_in_liquid_takes_up_what_the_force_gives(extending):
+    """k q + c q̇ = F: the integral of F − k q is c times the last deflection."""
+    history, (k, drag) = extending.history, extending.InLiquid(0.5, 2e-5).parameters
+    motion = sa.Triangle(start=5e-9, turn=-2e-9, speed=1e-5)
+    time, force = history.time, history.force
+    q = history.tip_height - motion.height(time)
+    given = (force - k * q)[1:] @ np.diff(time)
+    assert np.abs(q).max() > 0.1e-9
+    assert given == pytest.approx(drag * q[-1], abs=1e-3 * drag * np.abs(q).max())
+    assert np.abs(force - k * q).max() > 0.3 * np.abs(force).max()

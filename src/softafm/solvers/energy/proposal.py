@@ -35,7 +35,7 @@ from softafm.solvers.energy.tuning import (
 
 
 class Work(NamedTuple):
-    """Views of a ``Room``: what a step works in, for n nodes, f radii beyond and m modes.
+    """Views of a ``Room``: what a step works in, for n nodes, f radii beyond and m elements.
 
     ``memory`` (m, n) is that of the run, at first without the part of the new load; ``old`` that of
     the background. ``past`` (m + 1, n) holds load and memory of the instant before. Of ``u``
@@ -140,11 +140,11 @@ def propose(
     lever_state, work,
 ):  # fmt: skip
     """Move the past to the frame of a step, and guess the shape at its end: ``work.u``."""
-    n, modes = mesh.nodes.size, parameters.retardation.size
+    n, elements = mesh.nodes.size, parameters.retardation.size
     history = int(clock.history)
     frame = following_frame(step, clock, mesh, controls)
     stretch = frame / clock.frame
-    reframe(fields[LOAD : MEMORY + modes], mesh, stretch, work.shifting, work.past)
+    reframe(fields[LOAD : MEMORY + elements], mesh, stretch, work.shifting, work.past)
     order = min(history, 2)
     if order == 2:
         earlier = frame / clock.frame_earlier

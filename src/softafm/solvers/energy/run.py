@@ -128,9 +128,9 @@ class Run:
         Only the last cycle is kept. Yields as ``steps``.
         """
         surface, start = self.surface, self.surface.time
-        modes, times = surface.parameters.compliance[1:], surface.parameters.retardation
+        elements, times = surface.parameters.compliance[1:], surface.parameters.retardation
         period = self.breaks[-1] - start
-        periodic = PeriodicMemory(period, modes, times, surface.edge_gap)
+        periodic = PeriodicMemory(period, elements, times, surface.edge_gap)
         if times.max(initial=0) > period:  # small errors of a cycle add up
             surface.clock["contraction"] = np.inf
         memory, misses = None, []

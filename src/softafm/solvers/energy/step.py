@@ -1,4 +1,8 @@
-"""The compiled loop of the energy solver: propose a step, solve it, judge it, accept it."""
+"""The compiled loop of the energy solver: propose a step, solve it, judge it, accept it.
+
+An implicit predictor-corrector method. The predictor extrapolates shape and force, the corrector is
+an equilibrium, and their difference, with the error of the memory, sets the length of the step.
+"""
 
 from numba import float64, int64, types
 
@@ -74,7 +78,7 @@ def solve(trial, law, parameters, mesh, controls, clock, work):
 @inlined
 def judge(trial, force, parameters, mesh, controls, clock, work):
     """Error of a solved step, in units of the one aimed at."""
-    n, modes = mesh.nodes.size, parameters.retardation.size
+    n, elements = mesh.nodes.size, parameters.retardation.size
     u, gap, history = work.u, work.newton[0], trial.history
     error = 0.0
     for i in range(n):
@@ -83,7 +87,7 @@ def judge(trial, force, parameters, mesh, controls, clock, work):
     if history >= 2:
         ratio = clock.taken / trial.step
         curvature = 0.0
-        for m in range(modes):
+        for m in range(elements):
             curvature += parameters.compliance[m + 1] * work.weights[m, CURVATURE]
         for i in range(n):
             bend = (work.load_new[i] + work.load_earlier[0, i] / ratio) / (1.0 + ratio)
@@ -109,9 +113,9 @@ def judge(trial, force, parameters, mesh, controls, clock, work):
 @inlined
 def accept(trial, force, growth, parameters, mesh, controls, fields, clock, work, record):
     """Make a step's end the state, and write it into a record."""
-    n, modes = mesh.nodes.size, parameters.retardation.size
+    n, elements = mesh.nodes.size, parameters.retardation.size
     gap, frame, memory = work.newton[0, :n], trial.frame, work.past[1:]
-    for m in range(modes):
+    for m in range(elements):
         for i in range(n):
             memory[m, i] += work.weights[m, NEW] * work.load_new[i]
             work.lags[m, i] = work.load_new[i] - memory[m, i] - work.old[m, i]
@@ -170,7 +174,7 @@ def advance(
     """Step the surface in time until ``controls.end``, full records, a need to remesh, or FALL: no
     stable shape within the shortest step, which is not taken.
 
-    ``fields`` (MEMORY + modes, n), ``clock`` and ``lever_state`` hold the state and are updated,
+    ``fields`` (MEMORY + elements, n), ``clock`` and ``lever_state`` hold the state and are updated,
     by accepted steps only. Every accepted step
     fills one of ``records``, and a row of ``shapes`` (the deformation) if that has rows. Returns
     why it stopped, and the number of steps accepted. ``room`` is overwritten.

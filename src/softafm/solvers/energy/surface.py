@@ -79,14 +79,14 @@ class Surface:
         self.target = SPACING * strictness**0.2 / max(1.0, sharpness) / finer
         self.growth = max(SLOWEST_GROWTH, GROWTH * slack**-0.45) * min(1.0, strictness**0.17)
         self.finest_level = max(0, ceil(log2(COARSEST_SPACING / finest_spacing)))
-        self.level = self.first_level = self._level_for(0.4 * contact.open_width / self.open_frame)
-        self.mesh = self._mesh(self.level)
+        self.level = self.first_level = self._find_level(0.4 * contact.open_width / self.open_frame)
+        self.mesh = self._build_mesh(self.level)
         self.meshes, self.most_nodes = 1, self.mesh.nodes.size
         self.finest_spacing, self.finest_used = self.mesh.edge_spacing, self.level
         self.archive = self.mesh, 0.0
-        modes = self.parameters.retardation.size
+        elements = self.parameters.retardation.size
         self._rooms: dict[tuple[int, int, int], Room] = {}
-        self.fields = np.zeros((MEMORY + modes, self.mesh.nodes.size))
+        self.fields = np.zeros((MEMORY + elements, self.mesh.nodes.size))
         self.clock = new_clock()
         self.clock["time"] = breaks[0]
         self.clock["contraction"] = 0.0 if slack < 2 else np.inf
@@ -95,10 +95,10 @@ class Surface:
         self.background = Background(np.empty((0, 0)), 1.0, 1.0, 1.0, 1.0, 0.0)
         self.clock["force_scale"] = contact.force_scale
 
-    def _mesh(self, level: int) -> Mesh:
+    def _build_mesh(self, level: int) -> Mesh:
         return Mesh(*unit_mesh(COARSEST_SPACING * 2.0**-level, self.growth, EXTENT))
 
-    def _level_for(self, spacing: float) -> int:
+    def _find_level(self, spacing: float) -> int:
         """Level of the mesh whose edge spacing, in contact radii, is at most this."""
         level = ceil(log2(COARSEST_SPACING / spacing) - 1e-9)
         return min(max(level, 0), self.finest_level)
@@ -140,16 +140,16 @@ class Surface:
         """Carry all fields to the mesh that suits a cohesive zone seen ``coarseness`` from here."""
         self.level = self.first_level
         if coarseness > 0:
-            self.level = self._level_for(self.mesh.edge_spacing * self.target / coarseness)
-        mesh = self._mesh(self.level)
-        self.fields, self.mesh = self._carried(self.fields, mesh, 1.0), mesh
+            self.level = self._find_level(self.mesh.edge_spacing * self.target / coarseness)
+        mesh = self._build_mesh(self.level)
+        self.fields, self.mesh = self._carry(self.fields, mesh, 1.0), mesh
         self.meshes += 1
         self.most_nodes = max(self.most_nodes, self.mesh.nodes.size)
         self.finest_spacing = min(self.finest_spacing, self.mesh.edge_spacing)
         self.finest_used = max(self.finest_used, self.level)
 
     def rewind(self, time: float) -> np.ndarray:
-        """Go back to ``time``; return the memory gained since, (modes, n) in Pa·m.
+        """Go back to ``time``; return the memory gained since, (elements, n) in Pa·m.
 
         It is returned on a mesh of its own, always the same, that of the finest level so far. The
         surface keeps its mesh if it is in contact. Whoever goes on has to ``remember``, then to
@@ -157,13 +157,13 @@ class Surface:
         """
         clock = self.clock
         if self.archive[1] == 0:
-            self.archive = self._mesh(self.finest_used), float(clock["frame"])
+            self.archive = self._build_mesh(self.finest_used), float(clock["frame"])
         archive, frame = self.archive
-        gained = self._carried(self.fields[MEMORY:], archive, frame / clock["frame"])
+        gained = self._carry(self.fields[MEMORY:], archive, frame / clock["frame"])
         if clock["edge"] == 0:
             self.level = self.first_level
-            mesh = self._mesh(self.level)
-            self.fields = self._carried(self.fields, mesh, self.open_frame / clock["frame"])
+            mesh = self._build_mesh(self.level)
+            self.fields = self._carry(self.fields, mesh, self.open_frame / clock["frame"])
             self.mesh, clock["frame"] = mesh, self.open_frame
         self.fields[MEMORY:] = 0
         clock["time"] = time
@@ -177,7 +177,7 @@ class Surface:
         )
 
     def memory(self) -> np.ndarray:
-        """Return the memory fields now, (modes, n) in Pa·m."""
+        """Return the memory fields now, (elements, n) in Pa·m."""
         memory = np.zeros((self.parameters.retardation.size, self.mesh.nodes.size))
         recall(
             self.background, self.time, self.clock["frame"], self.parameters.retardation,
@@ -185,7 +185,7 @@ class Surface:
         )  # fmt: skip
         return memory + self.fields[MEMORY:]
 
-    def _carried(self, fields, mesh: Mesh, stretch: float) -> np.ndarray:
+    def _carry(self, fields, mesh: Mesh, stretch: float) -> np.ndarray:
         """Return fields (m, n) on another mesh, in a frame ``stretch`` times larger."""
         old, n = self.mesh, mesh.nodes.size
         result = np.empty((len(fields), n))
@@ -206,8 +206,8 @@ class Surface:
         h0 = height_at(self.time, self.parameters.height)
         base = h0 - self.parameters.law[ORIGIN] + tip
         memory = self.memory()
-        instantaneous, modes = self.parameters.compliance[0], self.parameters.compliance[1:]
-        v = -modes @ memory
+        instantaneous, elements = self.parameters.compliance[0], self.parameters.compliance[1:]
+        v = -elements @ memory
         standoff = base + clock["deflection"]
         shape = self.fields[DEFORMATION]
         # A tip that starts inside the surface pushes it away.
@@ -230,7 +230,7 @@ class Surface:
         edge = frame * radius_of_gap(gap, mesh.nodes, self.edge_gap)
         zone = frame * radius_of_gap(gap, mesh.nodes, self.open_gap) - edge
         lag = self.fields[LOAD] - memory
-        rates = modes / self.parameters.retardation
+        rates = elements / self.parameters.retardation
         clock["frame_earlier"] = clock["frame_earliest"] = frame
         clock["edge"], clock["axis_gap"], clock["force"] = edge, gap[0], force
         clock["force_scale"] = max(clock["force_scale"], abs(force))
