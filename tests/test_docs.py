@@ -446,3 +446,15 @@ def test_lines_of_prose_are_wrapped():
         prose = re.sub(r"```.*?```", "", text, flags=re.S)
         long = [line for line in prose.splitlines() if len(line) > 100 and line[0] not in "|!"]
         assert not long, f"{page.name}: wrap with tools/wrap.py"
+
+
+def test_a_lever_in_liquid_takes_up_what_the_force_gives(extending):
+    """k q + c q̇ = F: the integral of F − k q is c times the last deflection."""
+    history, (k, drag) = extending.history, extending.InLiquid(0.5, 2e-5).parameters
+    motion = sa.Triangle(start=5e-9, turn=-2e-9, speed=1e-5)
+    time, force = history.time, history.force
+    q = history.tip_height - motion.height(time)
+    given = (force - k * q)[1:] @ np.diff(time)
+    assert np.abs(q).max() > 0.1e-9
+    assert given == pytest.approx(drag * q[-1], abs=1e-3 * drag * np.abs(q).max())
+    assert np.abs(force - k * q).max() > 0.3 * np.abs(force).max()

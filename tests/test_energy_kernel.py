@@ -10,7 +10,8 @@ from scipy.interpolate import CubicSpline
 import softafm as sa
 from softafm.halfspace.mesh import node_index, unit_mesh
 from softafm.instrument.compiled_levers import hold, remember_nothing
-from softafm.solvers.energy.equilibrium import descend, equilibrate, tip_force
+from softafm.solvers.energy.descent import descend
+from softafm.solvers.energy.equilibrium import equilibrate, tip_force
 from softafm.solvers.energy.frame import radius_of_gap, reframe, transfer
 from softafm.solvers.energy.layout import (
     FULL,
@@ -25,7 +26,8 @@ from softafm.solvers.energy.layout import (
     new_room,
 )
 from softafm.solvers.energy.memory import memory_weights
-from softafm.solvers.energy.step import advance, extrapolation_weights
+from softafm.solvers.energy.proposal import extrapolation_weights
+from softafm.solvers.energy.step import advance
 
 R, W, Z0 = 10e-9, 0.05, 0.3e-9
 LAW = sa.LennardJones.from_work_of_adhesion(W, Z0)

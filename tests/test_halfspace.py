@@ -9,7 +9,7 @@ from scipy.special import i0e
 import softafm as sa
 from softafm.halfspace.kernel import kernel
 from softafm.halfspace.mesh import node_index, unit_mesh
-from softafm.solvers.energy.surface import EXTENT
+from softafm.solvers.energy.tuning import EXTENT
 
 
 def displacement(mesh, pressure):

@@ -345,7 +345,7 @@ def test_cycles_that_scatter_are_not_steady_by_chance(misses, scatter):
 def test_cycles_that_find_no_steady_state_are_warned_of(monkeypatch):
     from softafm.solvers.energy import run as energy_run
 
-    monkeypatch.setattr(energy_run, "_MOST_CYCLES", 2)
+    monkeypatch.setattr(energy_run, "MOST_CYCLES", 2)
     contact = sa.Contact(
         sa.Paraboloid(10e-9),
         sa.StandardLinearSolid(2e9, 0.1e9, 10 / 278e3, 0.49),

@@ -24,7 +24,7 @@ class PeriodicMemory:
     period
         Of the motion, s.
     compliances, retardation_times
-        J_m, 1/Pa, and τ_m, s, shape (modes,).
+        J_m, 1/Pa, and τ_m, s, shape (elements,).
     unit
         Length over which contacts change, m. A start that is off by more than three is moved only
         part of the way, and not mixed: far off, a cycle tells little of the periodic memory.
@@ -40,8 +40,8 @@ class PeriodicMemory:
     def next_start(self, start, gained) -> tuple[np.ndarray, float]:
         """Return the memory to start the next cycle with, and how far the last start was off, m.
 
-        ``start`` is y_m at the start of a cycle, ``gained`` its Δ_m, shape (modes, nodes), in Pa·m.
-        The distance is that of the displacement Σ J_m y_m, largest over the nodes.
+        ``start`` is y_m at the start of a cycle, ``gained`` its Δ_m, shape (elements, nodes), in
+        Pa·m. The distance is that of the displacement Σ J_m y_m, largest over the nodes.
         """
         miss = gained / self._gaining - start
         off = float(np.abs(np.sum(self._compliances * miss, axis=0)).max(initial=0.0))
@@ -54,9 +54,9 @@ class PeriodicMemory:
         self._trials.append(start)
         self._misses.append(miss)
         del self._trials[: -_DEPTH - 1], self._misses[: -_DEPTH - 1]
-        return self._mixed(), off
+        return self._mix(), off
 
-    def _mixed(self) -> np.ndarray:
+    def _mix(self) -> np.ndarray:
         """Move from where the recent misses, seen as linear, would combine to the least."""
         trial, miss = self._trials[-1], self._misses[-1]
         steps = [b - a for a, b in zip(self._trials[:-1], self._trials[1:], strict=True)]

@@ -21,7 +21,7 @@ CONSTANT_MATRIX = types.Array(float64, 2, "C", readonly=True)
 # Why `advance` came back.
 FINISHED, FULL, REMESH, FALL, STUCK, TRIGGERED = range(6)
 
-# Rows of `fields`: the last three shapes, the load q before and now, then one per memory mode y_m.
+# Rows of `fields`: the last three shapes, the load q before and now, then one per element y_m.
 DEFORMATION, EARLIER, EARLIEST, LOAD_EARLIER, LOAD, MEMORY = range(6)
 
 # Entry of the law's parameters: where its gaps are counted from. The solver's gaps are above it.
@@ -105,8 +105,8 @@ class Parameters(NamedTuple):
 class Background(NamedTuple):
     """Memory from before ``since``, s, which only fades: y_m = values_m e^(−(t − since)/τ_m).
 
-    ``values`` (modes, nodes), or none, live on a mesh of this edge spacing and growth that ends at
-    ``end`` in a frame of radius ``frame``, m.
+    ``values`` (elements, nodes), or none, live on a mesh of this edge spacing and growth that ends
+    at ``end`` in a frame of radius ``frame``, m.
     """
 
     values: np.ndarray
@@ -146,7 +146,7 @@ class Controls(NamedTuple):
 
 
 class Room(NamedTuple):
-    """Memory for the compiled loops to work in, for n nodes, f radii beyond and m modes."""
+    """Memory for the compiled loops to work in, for n nodes, f radii beyond and m elements."""
 
     rows: np.ndarray
     """(12, n + 1)."""
@@ -180,12 +180,12 @@ def new_clock() -> np.void:
     return np.zeros(1, CLOCK_FIELDS)[0]
 
 
-def new_room(nodes: int, far: int, modes: int) -> Room:
-    """Return room for a mesh and a number of memory modes."""
+def new_room(nodes: int, far: int, elements: int) -> Room:
+    """Return room for a mesh and a number of elements."""
     return Room(
         np.empty((12, nodes + 1)),
-        np.empty((10 + 4 * modes, nodes)),
+        np.empty((10 + 4 * elements, nodes)),
         np.empty((nodes + 1, nodes + 1)),
         np.empty((4, far)),
-        np.empty((modes + 1, 5)),
+        np.empty((elements + 1, 5)),
     )

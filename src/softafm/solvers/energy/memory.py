@@ -15,7 +15,7 @@ DECAY, EARLIER, NOW, NEW, CURVATURE = range(5)
 
 @compile_for((float64, float64, int64, VECTOR, VECTOR, MATRIX))
 def memory_weights(step, last, order, compliance, retardation, weights):
-    """Weights of y⁺ = decay·y + earlier·q₋ + now·q + new·q⁺ over a step, one row per mode.
+    """Weights of y⁺ = decay·y + earlier·q₋ + now·q + new·q⁺ over a step, one row per element.
 
     Exact for q linear in time, or with ``order`` 2, quadratic through the instant ``last`` before.
     With k = step/τ: moments M_j = ∫₀¹ k e^(−k(1−s)) s^j ds; the quadratic adds M_2 − M_1 times the
@@ -56,19 +56,19 @@ def memory_weights(step, last, order, compliance, retardation, weights):
 def recall(background, time, frame, retardation, nodes, work, memory):
     """Memory of the background at ``time`` on the nodes of a frame, into ``memory`` (m, n).
 
-    Rows of modes that the background has not are zero.
+    Rows of elements that the background has not are zero.
     """
-    modes = background.values.shape[0]
-    for m in range(modes, memory.shape[0]):
+    elements = background.values.shape[0]
+    for m in range(elements, memory.shape[0]):
         for i in range(nodes.size):
             memory[m, i] = 0.0
-    if modes == 0:
+    if elements == 0:
         return
     transfer(
         background.values, background.end, background.edge_spacing, background.growth,
         frame / background.frame, nodes, work, memory,
     )  # fmt: skip
-    for m in range(modes):
+    for m in range(elements):
         fading = exp(-(time - background.since) / retardation[m])
         for i in range(nodes.size):
             memory[m, i] *= fading
@@ -79,14 +79,14 @@ def displace_by_memory(compliance, weights, load_earlier, load, memory, old, v):
     """Carry the memory over a step as far as it is known; return the compliance of the step.
 
     The step is an elastic contact of that compliance on a surface displaced by ``v``, which is
-    overwritten, as is ``memory`` (modes, n) of the instant before; ``old`` is that of the
+    overwritten, as is ``memory`` (elements, n) of the instant before; ``old`` is that of the
     background at the end of the step. The part of the new load is left out.
     """
-    modes, n = memory.shape
+    elements, n = memory.shape
     total = compliance[0]
     for i in range(n):
         v[i] = 0.0
-    for m in range(modes):
+    for m in range(elements):
         total += compliance[m + 1] * weights[m, NEW]
         for i in range(n):
             memory[m, i] = (
@@ -100,10 +100,10 @@ def displace_by_memory(compliance, weights, load_earlier, load, memory, old, v):
 
 @inlined
 def dissipated_power(frame, compliance, retardation, lags, strained):
-    """Power that the dashpots of all modes take, W, by the lags q − y_m and S times them."""
-    modes, n = lags.shape
+    """Power that the dashpots of all elements take, W, by the lags q − y_m and S times them."""
+    elements, n = lags.shape
     power = 0.0
-    for m in range(modes):
+    for m in range(elements):
         product = 0.0
         for i in range(n):
             product += lags[m, i] * strained[m, i]

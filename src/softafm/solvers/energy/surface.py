@@ -6,7 +6,8 @@ import numpy as np
 
 from softafm.errors import DivergedError
 from softafm.halfspace.mesh import unit_mesh
-from softafm.solvers.energy.equilibrium import descend, raise_tip, tip_force
+from softafm.solvers.energy.descent import descend
+from softafm.solvers.energy.equilibrium import raise_tip, tip_force
 from softafm.solvers.energy.frame import frame_for, radius_of_gap, transfer
 from softafm.solvers.energy.layout import (
     DEFORMATION,
@@ -22,15 +23,19 @@ from softafm.solvers.energy.layout import (
     new_room,
 )
 from softafm.solvers.energy.memory import recall
-from softafm.solvers.energy.tuning import CLOSEST
+from softafm.solvers.energy.tuning import (
+    CLOSEST,
+    COARSER_THAN_NEEDED,
+    COARSEST_SPACING,
+    EQUILIBRIUM_ERROR,
+    EXTENT,
+    FINER_THAN_NEEDED,
+    GROWTH,
+    SLACK,
+    SLOWEST_GROWTH,
+    SPACING,
+)
 
-EXTENT = 8.0
-"""Radius of every mesh, in contact radii."""
-
-_COARSEST_SPACING = 0.3
-_SLACK = 3.0
-"""Fast Tabor number from which on the edge of a contact yields to small errors, such as those of a
-mesh that coarsens rapidly away from it."""
 _POINTS, _WEIGHTS = np.polynomial.legendre.leggauss(16)
 
 
@@ -66,22 +71,22 @@ class Surface:
         opens = 3 ** (1 / 6) * contact.reach if contact.adhesive else self.edge_gap
         self.open_gap = self.edge_gap + opens
         self.open_frame = contact.open_radius
-        self.accuracy = 1e-3 * strictness
+        self.accuracy = EQUILIBRIUM_ERROR * strictness
         sharpness = contact.surface.sharpness if contact.adhesive else 1.0
         tabor = contact.tabor_instantaneous if contact.adhesive else 0.0
-        slack = max(1.0, tabor / _SLACK)
+        slack = max(1.0, tabor / SLACK)
         finer = min(2.0, max(1.0, slack / 4))
-        self.target = 0.2 * strictness**0.2 / max(1.0, sharpness) / finer
-        self.growth = max(0.2, 0.3 * slack**-0.45) * min(1.0, strictness**0.17)
-        self.finest_level = max(0, ceil(log2(_COARSEST_SPACING / finest_spacing)))
-        self.level = self.first_level = self._level_for(0.4 * contact.open_width / self.open_frame)
-        self.mesh = self._mesh(self.level)
+        self.target = SPACING * strictness**0.2 / max(1.0, sharpness) / finer
+        self.growth = max(SLOWEST_GROWTH, GROWTH * slack**-0.45) * min(1.0, strictness**0.17)
+        self.finest_level = max(0, ceil(log2(COARSEST_SPACING / finest_spacing)))
+        self.level = self.first_level = self._find_level(0.4 * contact.open_width / self.open_frame)
+        self.mesh = self._build_mesh(self.level)
         self.meshes, self.most_nodes = 1, self.mesh.nodes.size
         self.finest_spacing, self.finest_used = self.mesh.edge_spacing, self.level
         self.archive = self.mesh, 0.0
-        modes = self.parameters.retardation.size
+        elements = self.parameters.retardation.size
         self._rooms: dict[tuple[int, int, int], Room] = {}
-        self.fields = np.zeros((MEMORY + modes, self.mesh.nodes.size))
+        self.fields = np.zeros((MEMORY + elements, self.mesh.nodes.size))
         self.clock = new_clock()
         self.clock["time"] = breaks[0]
         self.clock["contraction"] = 0.0 if slack < 2 else np.inf
@@ -90,12 +95,12 @@ class Surface:
         self.background = Background(np.empty((0, 0)), 1.0, 1.0, 1.0, 1.0, 0.0)
         self.clock["force_scale"] = contact.force_scale
 
-    def _mesh(self, level: int) -> Mesh:
-        return Mesh(*unit_mesh(_COARSEST_SPACING * 2.0**-level, self.growth, EXTENT))
+    def _build_mesh(self, level: int) -> Mesh:
+        return Mesh(*unit_mesh(COARSEST_SPACING * 2.0**-level, self.growth, EXTENT))
 
-    def _level_for(self, spacing: float) -> int:
+    def _find_level(self, spacing: float) -> int:
         """Level of the mesh whose edge spacing, in contact radii, is at most this."""
-        level = ceil(log2(_COARSEST_SPACING / spacing) - 1e-9)
+        level = ceil(log2(COARSEST_SPACING / spacing) - 1e-9)
         return min(max(level, 0), self.finest_level)
 
     @property
@@ -125,23 +130,26 @@ class Surface:
     @property
     def coarseness_allowed(self) -> tuple[float, float]:
         """Bounds of the coarseness within which the mesh is kept."""
-        finest = 0.35 * self.target if self.level > 0 else 0.0
-        return finest, 1.3 * self.target if self.level < self.finest_level else np.inf
+        finest = FINER_THAN_NEEDED * self.target if self.level > 0 else 0.0
+        return (
+            finest,
+            COARSER_THAN_NEEDED * self.target if self.level < self.finest_level else np.inf,
+        )
 
     def remesh(self, coarseness: float) -> None:
         """Carry all fields to the mesh that suits a cohesive zone seen ``coarseness`` from here."""
         self.level = self.first_level
         if coarseness > 0:
-            self.level = self._level_for(self.mesh.edge_spacing * self.target / coarseness)
-        mesh = self._mesh(self.level)
-        self.fields, self.mesh = self._carried(self.fields, mesh, 1.0), mesh
+            self.level = self._find_level(self.mesh.edge_spacing * self.target / coarseness)
+        mesh = self._build_mesh(self.level)
+        self.fields, self.mesh = self._carry(self.fields, mesh, 1.0), mesh
         self.meshes += 1
         self.most_nodes = max(self.most_nodes, self.mesh.nodes.size)
         self.finest_spacing = min(self.finest_spacing, self.mesh.edge_spacing)
         self.finest_used = max(self.finest_used, self.level)
 
     def rewind(self, time: float) -> np.ndarray:
-        """Go back to ``time``; return the memory gained since, (modes, n) in Pa·m.
+        """Go back to ``time``; return the memory gained since, (elements, n) in Pa·m.
 
         It is returned on a mesh of its own, always the same, that of the finest level so far. The
         surface keeps its mesh if it is in contact. Whoever goes on has to ``remember``, then to
@@ -149,13 +157,13 @@ class Surface:
         """
         clock = self.clock
         if self.archive[1] == 0:
-            self.archive = self._mesh(self.finest_used), float(clock["frame"])
+            self.archive = self._build_mesh(self.finest_used), float(clock["frame"])
         archive, frame = self.archive
-        gained = self._carried(self.fields[MEMORY:], archive, frame / clock["frame"])
+        gained = self._carry(self.fields[MEMORY:], archive, frame / clock["frame"])
         if clock["edge"] == 0:
             self.level = self.first_level
-            mesh = self._mesh(self.level)
-            self.fields = self._carried(self.fields, mesh, self.open_frame / clock["frame"])
+            mesh = self._build_mesh(self.level)
+            self.fields = self._carry(self.fields, mesh, self.open_frame / clock["frame"])
             self.mesh, clock["frame"] = mesh, self.open_frame
         self.fields[MEMORY:] = 0
         clock["time"] = time
@@ -169,7 +177,7 @@ class Surface:
         )
 
     def memory(self) -> np.ndarray:
-        """Return the memory fields now, (modes, n) in Pa·m."""
+        """Return the memory fields now, (elements, n) in Pa·m."""
         memory = np.zeros((self.parameters.retardation.size, self.mesh.nodes.size))
         recall(
             self.background, self.time, self.clock["frame"], self.parameters.retardation,
@@ -177,7 +185,7 @@ class Surface:
         )  # fmt: skip
         return memory + self.fields[MEMORY:]
 
-    def _carried(self, fields, mesh: Mesh, stretch: float) -> np.ndarray:
+    def _carry(self, fields, mesh: Mesh, stretch: float) -> np.ndarray:
         """Return fields (m, n) on another mesh, in a frame ``stretch`` times larger."""
         old, n = self.mesh, mesh.nodes.size
         result = np.empty((len(fields), n))
@@ -198,8 +206,8 @@ class Surface:
         h0 = height_at(self.time, self.parameters.height)
         base = h0 - self.parameters.law[ORIGIN] + tip
         memory = self.memory()
-        instantaneous, modes = self.parameters.compliance[0], self.parameters.compliance[1:]
-        v = -modes @ memory
+        instantaneous, elements = self.parameters.compliance[0], self.parameters.compliance[1:]
+        v = -elements @ memory
         standoff = base + clock["deflection"]
         shape = self.fields[DEFORMATION]
         # A tip that starts inside the surface pushes it away.
@@ -222,7 +230,7 @@ class Surface:
         edge = frame * radius_of_gap(gap, mesh.nodes, self.edge_gap)
         zone = frame * radius_of_gap(gap, mesh.nodes, self.open_gap) - edge
         lag = self.fields[LOAD] - memory
-        rates = modes / self.parameters.retardation
+        rates = elements / self.parameters.retardation
         clock["frame_earlier"] = clock["frame_earliest"] = frame
         clock["edge"], clock["axis_gap"], clock["force"] = edge, gap[0], force
         clock["force_scale"] = max(clock["force_scale"], abs(force))

@@ -1,7 +1,8 @@
-"""Constants of the energy solver that no physics sets, each with what it is for.
+"""Constants of the energy solver that no physics sets, each with what it is for and why it is so.
 
-They were chosen by the time and the largest error of the reference cases and the random contacts
-(``benchmarks/reference_cases.py``, ``accuracy.py``): change one, and run both again.
+Where no other place is named, ``benchmarks/tuning.py`` measures one: it prints steps, iterations
+and the largest error of the reference cases at half and at twice its value. They were chosen by
+these and by random contacts (``benchmarks/accuracy.py``): change one, and run both again.
 """
 
 # Newton's method.
@@ -16,11 +17,16 @@ MOST_ITERATIONS = 8
 """Iterations after which there is no stable shape near the guess; a good one takes 1 to 3."""
 
 TRUSTED = 0.1
-"""Second correction, in units of the accuracy, below which it is left out."""
+"""Second correction, in units of the accuracy, below which it is left out. Larger ones cost slack
+contacts and steady cycles more than they save (docs/performance.md, "What did not help")."""
 
 FORGOTTEN = 1.2
 """Factor by which the stored contraction estimate grows each time a second iteration is left out
 because of it, so that it is measured again from time to time."""
+
+EQUILIBRIUM_ERROR = 1e-3
+"""Error of an equilibrium, relative to the gap, at a tolerance of 1e-2: below those of a step, as a
+slack contact follows its edge by the softest of its shapes (docs/performance.md)."""
 
 # The descent in energy, used where no stable shape is near.
 
@@ -28,24 +34,28 @@ LARGEST_DESCENT = 0.4
 """Largest relative change of a gap in one step of the descent: a law is not quadratic beyond it."""
 
 MOST_DESCENTS = 10_000
+"""Steps of the descent after which there is no stable surface; those of a fall need tens."""
 
 SUFFICIENT = 1e-4
-"""Part of the energy that its slope promises which a step of the descent must gain (Armijo)."""
+"""Part of the energy that its slope promises which a step of the descent must gain (Armijo; the
+usual value, Nocedal and Wright, Numerical Optimization, 2006, section 3.1)."""
 
 # Memory.
 
 SHORT = 1e-2
-"""Step over retardation time below which moments are series, as differences would cancel."""
+"""Step over retardation time below which moments are series, as differences would cancel: both are
+then exact to 1e-8 (tests/test_energy_kernel.py, ``test_memory_of_a_linear_load``)."""
 
 STIFF = 4.5
 """Step over the relaxation time of a contact held rigidly above which the quadratic formula, like
-Adams and Moulton's, comes near its bound of stability, 6, and the linear one serves."""
+Adams and Moulton's, comes near its bound of stability, 6, and the linear one serves
+(tests/test_energy_kernel.py, ``test_memory_of_a_contact_held_rigidly_never_grows``)."""
 
 RINGING = 0.7
-"""Ratio of successive overshoots of the linear formula from which it is damped."""
+"""Ratio of successive overshoots of the linear formula from which it is damped (same test)."""
 
 DAMPING = 1.5
-"""Part of the quadratic's correction that damps it, with the other sign."""
+"""Part of the quadratic's correction that damps it, with the other sign (same test)."""
 
 # The frame that rides on the contact edge.
 
@@ -53,15 +63,55 @@ OPENING = 1.5
 """How much faster a frame closes on a contact that begins than its edge opens."""
 
 FARTHEST_RIDE = 0.2
-"""Largest move of the frame in a step, in contact radii."""
+"""Largest move of the frame in a step, in contact radii: extrapolation is not trusted beyond."""
 
 AT_REST = 0.2
 """Move of the edge in a step, in edge spacings, below which the frame stands still."""
 
+LAG = 2.0
+"""How far the edge moves, in edge spacings, while the frame catches up with it: at once, slack
+contacts amplify the change of mesh (docs/performance.md, "What did not help")."""
+
 SMALLEST_FRAME = 0.5
 """Smallest frame, in frames of the shape before: interpolation needs the same nodes in both."""
 
+# The mesh.
+
+EXTENT = 8.0
+"""Radius of every mesh, in contact radii; beyond it the surface counts as flat
+(tests/test_halfspace.py: smooth pressures are met to a few 1e-5)."""
+
+COARSEST_SPACING = 0.3
+"""Node spacing at the edge of the coarsest mesh, in contact radii; each finer one has half."""
+
+SPACING = 0.2
+"""Node spacing at the edge aimed at, in widths of the cohesive zone, at a tolerance of 1e-2."""
+
+GROWTH, SLOWEST_GROWTH = 0.3, 0.2
+"""Logarithmic growth of the spacing a node away from the edge, and its least one, in slack contacts
+(docs/performance.md, "What did not help": 0.45 slips in slack contacts)."""
+
+SLACK = 3.0
+"""Fast Tabor number from which on the edge of a contact yields to small errors, such as those of a
+mesh that coarsens rapidly away from it (the same place)."""
+
+FINER_THAN_NEEDED, COARSER_THAN_NEEDED = 0.35, 1.3
+"""Spacing, in units of the one aimed at, at which the mesh is exchanged: more than a factor of two
+apart, which is that between meshes, or it would be exchanged back at once."""
+
+FINEST_TARGET = 0.02
+"""Smallest spacing aimed at after slips of the edge, in widths of the cohesive zone."""
+
 # Steps.
+
+PREDICTION_ERROR = 0.03
+"""Largest error of the extrapolated shape, relative to the gap, at a tolerance of 1e-2."""
+
+MEMORY_ERROR = 0.01
+"""Largest error of the memory in a step, relative to the gap, at that tolerance."""
+
+FORCE_ERROR = 0.01
+"""Largest error of the extrapolated force, relative to the largest so far, at that tolerance."""
 
 APPROACH = 0.3
 """Part of the gap that an approaching tip may cross in a step before it feels the surface."""
@@ -82,4 +132,69 @@ LEAST_RETRY, LEAST_GROWTH, MOST_GROWTH = 0.25, 0.3, 2.5
 """Bounds of the next step, in units of the last one: taken again; after success."""
 
 AT_TRIGGER = 0.1
-"""How near the force must come to the trigger, in units of the error allowed in a step."""
+"""How near the force must come to the trigger, in units of the error allowed in a step
+(tests/test_setpoint.py)."""
+
+FEWEST_STEPS = 12
+"""Steps between two stops at a tolerance of 1e-2, however little happens: curves need points."""
+
+FIRST_STEP = 0.005
+"""First step of a motion, in times to the first stop; tests/test_reproducible.py varies it from a
+thousandth to three times that, and V and E change by 2e-4 at most."""
+
+AFTER_A_BREAK = 0.1
+"""First step after a break of the motion, in units of the last one before it."""
+
+SHORTEST_STEP = 1e-4
+"""Shortest step before a fall, in retardation times or the time in which the tip crosses the gap of
+the contact edge, whichever is less."""
+
+# Falls.
+
+STIFF_SHARE = 0.2
+"""Largest share of the instantaneous compliance that is not delayed in a fall: with it alone the
+contact is stable, and the less is delayed the fewer steps a fall takes."""
+
+FALL_DECADES = 4
+"""How many powers of ten faster than the shortest step the fictitious creep of a fall is."""
+
+MOST_PATIENCE = 8
+"""How often a fall that has not ended is given ten times as many of these creep times."""
+
+ERROR_IN_A_FALL = 0.2
+"""Errors of prediction and memory allowed in the steps of a fall, of which only the end counts."""
+
+END_OF_FALL = 1e-4
+"""How far the surface may be from its end, in gaps of the contact edge, where a fall ends."""
+
+MOST_TRIES_IN_A_FALL = 5000.0
+"""Steps after which a fall is left to the descent in energy; most take a hundred."""
+
+SLIPS_AGAIN = 20
+"""A fall within so many of its durations after another makes the next one pass twice as long."""
+
+JUMP_OF_GAP, JUMP_OF_EDGE = 0.1, 0.05
+"""Relative change of the gap on the axis or of the edge from which a fall is recorded as a jump; a
+smaller one is a slip of the edge from node to node."""
+
+# Steady cycles (tests/test_steady.py).
+
+MOST_CYCLES = 150
+"""Cycles after which a run that is not steady ends, with a warning; most take 4 to 20."""
+
+STEADY = 1e-2
+"""How far off the memory may start, in gaps of the contact edge, in a cycle that counts as steady,
+at a tolerance of 1e-2: what the errors of a cycle leave."""
+
+STAGNANT = 8
+"""Cycles in which the start must become twice as good, or all that is left are errors."""
+
+# Doubts.
+
+SLACKEST = 18.0
+"""Fast Tabor number up to which an edge lets go between nodes as it would in a continuum
+(``benchmarks/table.py``: elastic contacts at 30)."""
+
+SHARPEST = 3.2
+"""Sharpness of a law beyond which an edge may catch on the nodes (``benchmarks/every_contact.py``:
+Dugdale's law with less smoothing than 0.07 is up to 2 % off)."""

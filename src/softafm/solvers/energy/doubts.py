@@ -1,0 +1,77 @@
+"""What a run of the energy solver doubts about its own result, and advises."""
+
+from math import sqrt
+
+from softafm.errors import AccuracyWarning
+from softafm.solvers.energy.tuning import COARSER_THAN_NEEDED, SHARPEST, SLACKEST
+
+
+def list_doubts(run) -> tuple[AccuracyWarning, ...]:
+    """Return the warnings that a finished run deserves."""
+    return (*_unsteady(run), *_too_coarse(run), *_too_slack(run), *_too_sharp(run))
+
+
+def suggest_longer_range(contact) -> str:
+    """Return advice, for the end of a line, where the contact is too soft for its own range."""
+    tabor = contact.tabor_softened
+    return f"; its Tabor number is {tabor:.3g}: try regularise=8" if tabor > 30 else ""
+
+
+def _unsteady(run) -> tuple[AccuracyWarning, ...]:
+    if run.unsteady <= run.steadiness:
+        return ()
+    text = (
+        f"no steady cycle after {run.cycle}: the surface starts the last ones off by up to "
+        f"{run.unsteady:.2g} gaps of largest tension from where they would end. Choose a "
+        "number of cycles instead"
+    )
+    return (AccuracyWarning(text, run.unsteady),)
+
+
+def _too_coarse(run) -> tuple[AccuracyWarning, ...]:
+    coarseness, edge = run.coarsest
+    if coarseness <= COARSER_THAN_NEEDED * run.target:
+        return ()
+    spacing = run.surface.mesh.edge_spacing * edge
+    law, remedy = run.contact.surface, ""
+    if run.contact.adhesive:
+        # Seen through coarse nodes the zone looks wide; the softened cohesive length bounds it.
+        length = run.contact.softened_modulus * law.range**2 / law.work_of_adhesion
+        wide = max(coarseness, 2 * spacing / length) / run.target
+        remedy = (
+            ", or enlarge the range of the attraction at fixed work of adhesion, regularise="
+            f"{run.contact.tabor_softened / sqrt(wide):.2g}"
+        )
+    text = (
+        f"the cohesive zone at the contact edge, {spacing / coarseness:.2g} m wide, is "
+        f"resolved by nodes {spacing:.2g} m apart (finest_spacing = "
+        f"{run.solver.finest_spacing:g} contact radii) where "
+        f"{run.target * spacing / coarseness:.2g} m is needed: forces and above all the loop "
+        f"energy may be wrong. Lower solvers.Energy(finest_spacing=...){remedy}"
+    )
+    return (AccuracyWarning(text, coarseness / run.target),)
+
+
+def _too_slack(run) -> tuple[AccuracyWarning, ...]:
+    tabor = run.contact.tabor_instantaneous
+    if not run.contact.adhesive or tabor <= SLACKEST or len(run.falls) < 2:
+        return ()
+    text = (
+        "the contact is soft for its adhesion even when loaded fast (Tabor number "
+        f"{tabor:.3g}): beyond {SLACKEST:g} its edge catches on the nodes before it lets go. "
+        "Forces hold, but the loop energy may be wrong, by 2 % at 20 and entirely at 60; try "
+        "regularise=8"
+    )
+    return (AccuracyWarning(text, tabor),)
+
+
+def _too_sharp(run) -> tuple[AccuracyWarning, ...]:
+    law = run.contact.surface
+    if not run.contact.adhesive or law.sharpness <= SHARPEST:
+        return ()
+    text = (
+        f"the tension of the surface law '{law.kind}' ends {law.sharpness:.2g} times as sharply"
+        f" as that of a Lennard-Jones law of its range; beyond {SHARPEST:g} times the contact "
+        "edge may catch on the nodes, and forces be off by several per cent. Smooth the law"
+    )
+    return (AccuracyWarning(text, law.sharpness),)
