@@ -119,9 +119,9 @@ def test_the_sample_that_is_a_class_is_burgers_model(extending):
     time = np.array([0.0, 1e-5, 1e-4, 1e-3])
     creep = 1 / 2e9 + (1 - np.exp(-time / 1e-4)) / 0.5e9 + time / 1e6
     np.testing.assert_allclose(burgers.creep_compliance(time), creep, rtol=1e-12)
-    E_inf, moduli, times = rheology.chain_to_prony(*burgers.reduced_compliance)
-    series = rheology.GeneralizedMaxwell(E_inf, moduli * (1 - 0.4**2), times, 0.4)
-    for part, expected in zip(series.reduced_compliance, burgers.reduced_compliance, strict=True):
+    E_inf, moduli, times = rheology.chain_to_prony(*burgers.compliance)
+    series = rheology.GeneralizedMaxwell(E_inf, moduli, times, 0.4)
+    for part, expected in zip(series.compliance, burgers.compliance, strict=True):
         np.testing.assert_allclose(part, expected, rtol=1e-10)
 
 

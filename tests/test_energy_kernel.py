@@ -8,7 +8,9 @@ from scipy.integrate import quad
 from scipy.interpolate import CubicSpline
 
 import softafm as sa
-from softafm.halfspace.mesh import node_index, unit_mesh
+from softafm.bodies import HalfSpace
+from softafm.bodies.mesh import node_index, unit_mesh
+from softafm.bodies.stiffness import Stiffness
 from softafm.solvers.energy.equilibrium import descend, equilibrate, tip_force
 from softafm.solvers.energy.frame import radius_of_gap, reframe, transfer
 from softafm.solvers.energy.layout import (
@@ -18,8 +20,8 @@ from softafm.solvers.energy.layout import (
     RECORD_FIELDS,
     Background,
     Controls,
-    Mesh,
     Parameters,
+    mesh_of,
     new_clock,
     new_room,
 )
@@ -31,6 +33,11 @@ LAW = sa.LennardJones.from_work_of_adhesion(W, Z0)
 TIP = sa.Paraboloid(R)
 FRAME = 1.5 * np.sqrt(R * Z0)
 seeds = st.integers(0, 2**32 - 1)
+
+
+def mesh_with_stiffness(mesh):
+    """A mesh on a half-space."""
+    return mesh_of(mesh, Stiffness(HalfSpace(sa.Elastic(1e9, 0.3)), mesh).uniform)
 
 
 # Fields from mesh to mesh
@@ -93,7 +100,7 @@ def test_transfer_error_falls_with_a_high_power_of_the_growth():
 def test_reframing_is_a_transfer_to_the_same_mesh(stretch):
     field = 1 / np.sqrt(1 + OLD.nodes[None] ** 2)
     found, work = np.empty(field.shape), np.empty((7, field.size))
-    reframe(field, Mesh(*OLD), stretch, work, found)
+    reframe(field, mesh_with_stiffness(OLD), stretch, work, found)
     assert np.allclose(found[0], carried(field[0], OLD, OLD, stretch), rtol=1e-10, atol=0)
     assert stretch != 1 or np.array_equal(found, field)
 
@@ -196,7 +203,7 @@ def test_memory_of_a_contact_held_rigidly_never_grows(lag):
 # Equilibrium
 
 
-MESH = Mesh(*unit_mesh(0.15, 0.25, 8.0))
+MESH = mesh_with_stiffness(unit_mesh(0.15, 0.25, 8.0))
 GAPS = TIP.profile(FRAME * MESH.nodes)
 PRESSURE, POTENTIAL, PARAMETERS = LAW.compiled_pressure
 

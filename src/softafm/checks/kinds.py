@@ -8,8 +8,13 @@ from softafm.checks.refusals import all_of, shown
 
 SOLVER = ("kind", "adaptive", "solve")
 """What a solver has; of the user's own, too."""
-SAMPLE = ("kind", "reduced_compliance")
+SAMPLE = ("kind", "compliance", "poisson")
 """What a sample has, whatever its class."""
+REDUCED = (
+    "has a reduced_compliance only: must have compliance, the creep compliance under uniaxial "
+    "stress without the factor 1 − ν², and poisson"
+)
+"""What is wrong with a sample that states its compliance as a half-space has it."""
 MOTION = ("kind", "breaks", "landmarks", "top_speed", "height", "velocity", "compiled_height")
 """What a motion has; of the user's own, too."""
 
@@ -29,6 +34,13 @@ def refuse_incomplete(name: str, value: Any, needed: Sequence[str], wanted: str)
         return
     lacks = f"; it has no {all_of(missing)}" if 0 < len(missing) < len(needed) else ""
     raise ValueError(f"{name} = {_given(value)}: must be {wanted}{lacks}{_call(value)}")
+
+
+def refuse_sample(name: str, value: Any) -> None:
+    """Raise ValueError if ``value`` lacks something that a sample has."""
+    if hasattr(value, "reduced_compliance") and not hasattr(value, "compliance"):
+        raise ValueError(f"{name} = {_given(value)}: {REDUCED}")
+    refuse_incomplete(name, value, SAMPLE, "a sample such as softafm.Elastic")
 
 
 def refuse_non_dataset(name: str, value: Any) -> None:

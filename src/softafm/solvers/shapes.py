@@ -4,7 +4,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from softafm.halfspace.mesh import node_index
+from softafm.bodies.mesh import node_index
 from softafm.solvers.history import Profiles
 
 

@@ -1,7 +1,7 @@
 """What the compiled loops of the energy solver work on, and the types that numba knows it by.
 
 Lengths in m, pressures in Pa, times in s. The surface is known on nodes r_i = a ξ_i of a unit mesh
-(softafm.halfspace.mesh) in a frame of radius a that follows the contact edge. Memory is carried as
+(softafm.bodies.mesh) in a frame of radius a that follows the contact edge. Memory is carried as
 displacements: q = K p and y_m = K w_m with τ_m ẏ_m = q − y_m, so that u = −(J_g q + Σ J_m y_m), and
 a change of frame is an interpolation of smooth fields.
 """
@@ -10,6 +10,8 @@ from typing import NamedTuple
 
 import numpy as np
 from numba import float64, from_dtype, types
+
+from softafm.bodies.mesh import UnitMesh
 
 VECTOR = float64[::1]
 MATRIX = float64[:, ::1]
@@ -65,7 +67,7 @@ RECORD_FIELDS = record(
 
 
 class Mesh(NamedTuple):
-    """A ``softafm.halfspace.mesh.UnitMesh`` as the kernels take it."""
+    """A ``softafm.bodies.mesh.UnitMesh`` as the kernels take it, with the stiffness on it."""
 
     nodes: np.ndarray
     masses: np.ndarray
@@ -75,6 +77,12 @@ class Mesh(NamedTuple):
     far: np.ndarray
     far_masses: np.ndarray
     slopes: np.ndarray
+
+
+def mesh_of(mesh: UnitMesh, stiffness: np.ndarray) -> Mesh:
+    """Return a mesh with the stiffness of a body on it, as the kernels take them."""
+    known = {name: getattr(mesh, name) for name in Mesh._fields if name != "stiffness"}
+    return Mesh(**known, stiffness=stiffness)
 
 
 class Parameters(NamedTuple):

@@ -4,8 +4,9 @@ from math import ceil, log2, sqrt
 
 import numpy as np
 
+from softafm.bodies.mesh import unit_mesh
+from softafm.bodies.stiffness import Stiffness
 from softafm.errors import DivergedError
-from softafm.halfspace.mesh import unit_mesh
 from softafm.solvers.energy.equilibrium import descend, raise_tip, tip_force
 from softafm.solvers.energy.frame import frame_for, radius_of_gap, transfer
 from softafm.solvers.energy.layout import (
@@ -17,6 +18,7 @@ from softafm.solvers.energy.layout import (
     Mesh,
     Parameters,
     Room,
+    mesh_of,
     new_clock,
     new_room,
 )
@@ -43,7 +45,7 @@ class Surface:
     def __init__(self, contact, motion, stiffness, strictness: float, finest_spacing: float):
         self.contact = contact
         breaks = motion.breaks
-        compliance = contact.sample.reduced_compliance.chain(breaks[-1] - breaks[0])
+        compliance = contact.body.compliance.chain(breaks[-1] - breaks[0])
         height, height_parameters = motion.compiled_height
         profile, tip_parameters = contact.tip.compiled_profile
         law, potential, law_parameters = contact.surface.compiled_pressure
@@ -52,7 +54,7 @@ class Surface:
             height_parameters,
             tip_parameters,
             law_parameters,
-            np.append(compliance.instantaneous, compliance.modes),
+            np.append(compliance.instantaneous, compliance.elements),
             np.array(compliance.retardation_times, float),
             np.array([stiffness, 0.0]),
         )
@@ -88,7 +90,10 @@ class Surface:
         self.clock["force_scale"] = contact.force_scale
 
     def _mesh(self, level: int) -> Mesh:
-        return Mesh(*unit_mesh(_COARSEST_SPACING * 2.0**-level, self.growth, EXTENT))
+        mesh = unit_mesh(_COARSEST_SPACING * 2.0**-level, self.growth, EXTENT)
+        found = Stiffness(self.contact.body, mesh).uniform
+        assert found is not None
+        return mesh_of(mesh, found)
 
     def _level_for(self, spacing: float) -> int:
         """Level of the mesh whose edge spacing, in contact radii, is at most this."""
@@ -254,7 +259,7 @@ def gap_origin(contact) -> float:
         origin = gap + 9 * sqrt(3) * law.largest_tension / float(law.slope(gap))
     else:
         origin = edge - 20 * contact.reach
-    hardest = 1 / contact.sample.reduced_compliance.instantaneous
+    hardest = 1 / contact.body.compliance.instantaneous
     while law.overlaps and law.pressure(origin + CLOSEST * (edge - origin)) < hardest:
         origin -= 0.2 * (edge - origin)
     return max(origin, law.closest_gap)
