@@ -24,19 +24,26 @@ _PANEL, _FEWEST = 6.0, 6
 _GAUSS, _WEIGHTS = (x / 2 for x in np.polynomial.legendre.leggauss(48))
 POINTS = 0.5 + _GAUSS
 """Gauss points ξ on (0, 1), of fractions of a contact radius."""
-_SMALLEST, _LARGEST, _RADII = 1e-2, 4.0, 24
+_SMALLEST, _LARGEST, _RADII = 1e-2, 4.0, 40
 """Contact radii, in lengths of a body, of which estimates are tabulated."""
+
+_REFINED = 4.0 ** np.arange(-6, 0)
+"""Edges of panels in the first one, as parts of it."""
 
 Factor = Callable[[np.ndarray], np.ndarray]
 
 
 def wavenumbers(highest: float, radius: float) -> tuple[np.ndarray, np.ndarray]:
-    """Points and weights of ∫ f dκ from 0 to ``highest``, for J0 and cosines out to ``radius``."""
+    """Points and weights of ∫ f dκ from 0 to ``highest``, for J0 and cosines out to ``radius``.
+
+    Panels are ever finer towards 0: there S of a thin hard skin changes rapidly.
+    """
     panels = max(_FEWEST, int(np.ceil(highest * radius / _PANEL)))
-    half = highest / panels / 2
-    middles = half * (2 * np.arange(panels) + 1)
-    points = middles[:, None] + half * _PANEL_POINTS
-    return points.ravel(), np.tile(half * _PANEL_WEIGHTS, panels)
+    edges = np.arange(1, panels + 1) * (highest / panels)
+    edges = np.concatenate([[0.0], edges[0] * _REFINED, edges])
+    half = np.diff(edges)[:, None] / 2
+    points = edges[:-1, None] + half * (1 + _PANEL_POINTS)
+    return points.ravel(), (half * _PANEL_WEIGHTS).ravel()
 
 
 def excess(nodes: np.ndarray, factor: Factor, highest: float) -> np.ndarray:

@@ -63,8 +63,9 @@ class Stiffness:
         """
         if self.uniform is not None:
             return
-        first = floor(log(frame / self._operator.body.length) / STEP) - POINTS // 2 + 1
-        last = first + POINTS
+        # One more at either end, so that round-off of a logarithm makes no difference.
+        first = floor(log(frame / self._operator.body.length) / STEP) - POINTS // 2
+        last = first + POINTS + 2
         if len(self.entries):
             first = min(first, self.first)
             last = max(last, self.first + len(self.entries))
@@ -89,8 +90,8 @@ def _inverse(matrix: np.ndarray, body: Any, frame: float) -> np.ndarray:
 
     if not factorise(matrix, len(matrix)):
         raise DivergedError(
-            f"the body '{body.kind}' cannot be resolved in a contact of {frame:.3g} m: its widest "
-            f"is {body.widest:.3g} m"
+            f"the mesh cannot resolve the body '{body.kind}' in contacts of about {frame:.3g} m: "
+            f"it is good for {body.widest:.3g} m; indent less, or take a sharper tip"
         )
     inverse = np.eye(len(matrix))
     for row in inverse:

@@ -17,6 +17,7 @@ from softafm.solvers.energy.layout import (
     RECORD_FIELDS,
     REMESH,
     STUCK,
+    TABULATE,
     TRIGGERED,
     Controls,
 )
@@ -182,9 +183,12 @@ class Run:
         records = self._free_records()
         shapes = np.empty((0 if self.shapes is None else _CHUNK, surface.mesh.nodes.size))
         outcome, count = advance(
-            *surface.functions[:3], surface.parameters, surface.background, surface.mesh, controls,
-            surface.fields, surface.clock, records, shapes, surface.room(),
+            *surface.functions[:3], surface.parameters, surface.background, surface.mesh,
+            surface.table, controls, surface.fields, surface.clock, records, shapes, surface.room(),
         )  # fmt: skip
+        if outcome == TABULATE:
+            surface.tabulate(float(surface.clock["wanted"]))
+            outcome = FULL
         return outcome, records[:count], shapes[:count]
 
     def _free_records(self) -> np.ndarray:
@@ -320,7 +324,10 @@ class Run:
         )
 
     def _warnings(self) -> tuple[AccuracyWarning, ...]:
-        return (*self._unsteady(), *self._too_coarse(), *self._too_slack(), *self._too_sharp())
+        return (
+            *self._unsteady(), *self._too_coarse(), *self._too_slack(), *self._too_sharp(),
+            *self._too_wide(),
+        )  # fmt: skip
 
     def _unsteady(self) -> tuple[AccuracyWarning, ...]:
         if self.unsteady <= self.steadiness:
@@ -382,6 +389,18 @@ class Run:
             "edge may catch on the nodes, and forces be off by several per cent. Smooth the law"
         )
         return (AccuracyWarning(text, law.sharpness),)
+
+    def _too_wide(self) -> tuple[AccuracyWarning, ...]:
+        body = self.contact.body
+        widest = float(self.records["frame"][: self.count].max(initial=0.0))
+        if widest <= body.widest:
+            return ()
+        text = (
+            f"the contact and what acts around it reach to {widest:.3g} m, and on the body "
+            f"'{body.kind}' the mesh is good for contacts of up to {body.widest:.3g} m: forces and "
+            "energies may be wrong. Indent less, or take a sharper tip"
+        )
+        return (AccuracyWarning(text, widest / body.widest),)
 
 
 def _stagnates(misses: list[float]) -> bool:

@@ -31,6 +31,8 @@ from softafm.solvers.energy.layout import (
     REMESH,
     ROOM,
     STUCK,
+    TABLE,
+    TABULATE,
     TRIGGERED,
     VECTOR,
 )  # fmt: skip
@@ -42,6 +44,7 @@ from softafm.solvers.energy.memory import (
     memory_weights,
     recall,
 )  # fmt: skip
+from softafm.solvers.energy.stiffness import find_stiffness
 from softafm.solvers.energy.tuning import (
     APPROACH,
     AT_TRIGGER,
@@ -152,23 +155,25 @@ def predict(frame, step, history, fields, clock, mesh, weights, guess, work, sha
     for k in range(history):
         riding = max(frame - speed * ago[k], SMALLEST_FRAME * frame)
         row = DEFORMATION + k
-        reframe(fields[row : row + 1], mesh, riding / frames[k], work, shape)
+        reframe(fields[row : row + 1], mesh, frames[k], riding / frames[k], work, shape)
         for i in range(n):
             guess[i] += weights[k] * shape[0, i]
 
 
 @inlined
-def propose(step, height, profile, parameters, background, mesh, controls, fields, clock, work):
+def propose(step, frame, height, profile, parameters, background, mesh, fields, clock, work):
     """Move the past to the frame of a step, and guess the shape at its end: ``work.u``."""
     n, modes = mesh.nodes.size, parameters.retardation.size
     history = int(clock.history)
-    frame = following_frame(step, clock, mesh, controls)
     stretch = frame / clock.frame
-    reframe(fields[LOAD : MEMORY + modes], mesh, stretch, work.shifting, work.past)
+    reframe(fields[LOAD : MEMORY + modes], mesh, clock.frame, stretch, work.shifting, work.past)
     order = min(history, 2)
     if order == 2:
         earlier = frame / clock.frame_earlier
-        reframe(fields[LOAD_EARLIER:LOAD], mesh, earlier, work.shifting, work.load_earlier)
+        reframe(
+            fields[LOAD_EARLIER:LOAD], mesh, clock.frame_earlier, earlier, work.shifting,
+            work.load_earlier,
+        )  # fmt: skip
     else:
         for i in range(n):
             work.load_earlier[0, i] = 0.0
@@ -293,15 +298,16 @@ def move_clock(clock, step, frame, edge, force, deflection):
 @compile_for(
     types.UniTuple(int64, 2)(
         pointer(HEIGHT), pointer(PROFILE), pointer(PRESSURE), PARAMETERS,
-        BACKGROUND, MESH, CONTROLS, MATRIX, CLOCK, RECORDS, MATRIX, ROOM,
+        BACKGROUND, MESH, TABLE, CONTROLS, MATRIX, CLOCK, RECORDS, MATRIX, ROOM,
     ),
 )  # fmt: skip
 def advance(
-    height, profile, law, parameters, background, mesh, controls, fields, clock, records, shapes,
-    room,
+    height, profile, law, parameters, background, mesh, table, controls, fields, clock, records,
+    shapes, room,
 ):  # fmt: skip
-    """Step the surface in time until ``controls.end``, full records, a need to remesh, or FALL: no
-    stable shape within the shortest step, which is not taken.
+    """Step the surface in time until ``controls.end``, full records, a need to remesh, TABULATE: a
+    frame is wanted whose stiffness the table does not reach, or FALL: no stable shape within the
+    shortest step, which is not taken.
 
     ``fields`` (MEMORY + modes, n) and ``clock`` hold the state and are updated. Every accepted step
     fills one of ``records``, and a row of ``shapes`` (the deformation) if that has rows. Returns
@@ -311,17 +317,23 @@ def advance(
     work = furnish(room)
     gap, pressure = work.newton[0, :n], work.newton[1, :n]
     shortest = controls.shortest_step
-    count = 0
+    count, tabulated = 0, 0.0
     while count < records.size:
         left = controls.end - clock.time
         if left <= 0.0:
             return FINISHED, count
         if clock.tries >= controls.most_tries:
             return STUCK, count
-        clock.tries += 1
         step = choose_step(clock, controls, left)
+        frame = following_frame(step, clock, mesh, controls)
+        if frame != tabulated:
+            if not find_stiffness(table, frame):
+                clock.wanted = frame
+                return TABULATE, count
+            tabulated = frame
+        clock.tries += 1
         trial = propose(
-            step, height, profile, parameters, background, mesh, controls, fields, clock, work
+            step, frame, height, profile, parameters, background, mesh, fields, clock, work
         )
         iterations = equilibrate(
             work.u, work.v, trial.frame * trial.compliance, work.standoff, trial.lever, trial.rest,

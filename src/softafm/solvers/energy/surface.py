@@ -4,8 +4,8 @@ from math import ceil, log2, sqrt
 
 import numpy as np
 
-from softafm.bodies.mesh import unit_mesh
-from softafm.bodies.stiffness import Stiffness
+from softafm.bodies.mesh import UnitMesh, unit_mesh
+from softafm.bodies.stiffness import STEP, Stiffness
 from softafm.errors import DivergedError
 from softafm.solvers.energy.equilibrium import descend, raise_tip, tip_force
 from softafm.solvers.energy.frame import frame_for, radius_of_gap, transfer
@@ -15,14 +15,15 @@ from softafm.solvers.energy.layout import (
     MEMORY,
     ORIGIN,
     Background,
-    Mesh,
     Parameters,
     Room,
+    Table,
     mesh_of,
     new_clock,
     new_room,
 )
 from softafm.solvers.energy.memory import recall
+from softafm.solvers.energy.stiffness import find_stiffness
 from softafm.solvers.energy.tuning import CLOSEST
 
 EXTENT = 8.0
@@ -74,10 +75,10 @@ class Surface:
         self.growth = max(0.2, 0.3 * slack**-0.45) * min(1.0, strictness**0.17)
         self.finest_level = max(0, ceil(log2(_COARSEST_SPACING / finest_spacing)))
         self.level = self.first_level = self._level_for(0.4 * contact.open_width / self.open_frame)
-        self.mesh = self._mesh(self.level)
+        self._lay(self._unit_mesh(self.level))
         self.meshes, self.most_nodes = 1, self.mesh.nodes.size
         self.finest_spacing, self.finest_used = self.mesh.edge_spacing, self.level
-        self.archive = self.mesh, 0.0
+        self.archive = self._unit_mesh(self.level), 0.0
         modes = self.parameters.retardation.size
         self._rooms: dict[tuple[int, int, int], Room] = {}
         self.fields = np.zeros((MEMORY + modes, self.mesh.nodes.size))
@@ -86,14 +87,32 @@ class Surface:
         self.clock["contraction"] = 0.0 if slack < 2 else np.inf
         first = contact.contact_radius(float(motion.height(breaks[0])))
         self.clock["frame"] = frame_for(first, self.open_frame)
-        self.background = Background(np.empty((0, 0)), 1.0, 1.0, 1.0, 1.0, 0.0)
+        self.background = Background(np.empty((0, 0)), 1.0, 1.0, 1.0, 1.0, 0.0, 0.0)
         self.clock["force_scale"] = contact.force_scale
 
-    def _mesh(self, level: int) -> Mesh:
-        mesh = unit_mesh(_COARSEST_SPACING * 2.0**-level, self.growth, EXTENT)
-        found = Stiffness(self.contact.body, mesh).uniform
-        assert found is not None
-        return mesh_of(mesh, found)
+    def _unit_mesh(self, level: int) -> UnitMesh:
+        return unit_mesh(_COARSEST_SPACING * 2.0**-level, self.growth, EXTENT)
+
+    def _lay(self, mesh: UnitMesh) -> None:
+        """Take a mesh, with the stiffness of the body on it."""
+        body = self.contact.body
+        self.stiffness = Stiffness(body, mesh)
+        shown = self.stiffness.uniform
+        found = np.empty((0, 0) if shown is not None else self.stiffness.entries.shape[1:])
+        if shown is None:
+            shown = found.view()
+            shown.setflags(write=False)
+        self.mesh = mesh_of(mesh, shown, body.decay)
+        self.table = Table(self.stiffness.entries, 0.0, STEP, found)
+
+    def tabulate(self, frame: float) -> None:
+        """Let the mesh have the stiffness in a frame, m, and the table reach to it."""
+        if self.stiffness.uniform is not None:
+            return
+        self.stiffness.reach(frame)
+        start = np.log(self.contact.body.length) + STEP * self.stiffness.first
+        self.table = self.table._replace(entries=self.stiffness.entries, start=float(start))
+        find_stiffness(self.table, frame)
 
     def _level_for(self, spacing: float) -> int:
         """Level of the mesh whose edge spacing, in contact radii, is at most this."""
@@ -123,8 +142,9 @@ class Surface:
         self.level = self.first_level
         if coarseness > 0:
             self.level = self._level_for(self.mesh.edge_spacing * self.target / coarseness)
-        mesh = self._mesh(self.level)
-        self.fields, self.mesh = self._carried(self.fields, mesh, 1.0), mesh
+        mesh = self._unit_mesh(self.level)
+        self.fields = self._carried(self.fields, mesh, 1.0)
+        self._lay(mesh)
         self.meshes += 1
         self.most_nodes = max(self.most_nodes, self.mesh.nodes.size)
         self.finest_spacing = min(self.finest_spacing, self.mesh.edge_spacing)
@@ -139,14 +159,15 @@ class Surface:
         """
         clock = self.clock
         if self.archive[1] == 0:
-            self.archive = self._mesh(self.finest_used), float(clock["frame"])
+            self.archive = self._unit_mesh(self.finest_used), float(clock["frame"])
         archive, frame = self.archive
         gained = self._carried(self.fields[MEMORY:], archive, frame / clock["frame"])
         if clock["edge"] == 0:
             self.level = self.first_level
-            mesh = self._mesh(self.level)
+            mesh = self._unit_mesh(self.level)
             self.fields = self._carried(self.fields, mesh, self.open_frame / clock["frame"])
-            self.mesh, clock["frame"] = mesh, self.open_frame
+            self._lay(mesh)
+            clock["frame"] = self.open_frame
         self.fields[MEMORY:] = 0
         clock["time"] = time
         return gained
@@ -155,8 +176,9 @@ class Surface:
         """Take ``memory``, as ``rewind`` returned it, for that of all that was before now."""
         mesh, frame = self.archive
         self.background = Background(
-            memory, frame, mesh.nodes[-1], mesh.edge_spacing, mesh.growth, self.time
-        )
+            memory, frame, mesh.nodes[-1], mesh.edge_spacing, mesh.growth,
+            frame * self.mesh.decay, self.time,
+        )  # fmt: skip
 
     def memory(self) -> np.ndarray:
         """Return the memory fields now, (modes, n) in Pa·m."""
@@ -167,19 +189,20 @@ class Surface:
         )  # fmt: skip
         return memory + self.fields[MEMORY:]
 
-    def _carried(self, fields, mesh: Mesh, stretch: float) -> np.ndarray:
+    def _carried(self, fields, mesh: UnitMesh, stretch: float) -> np.ndarray:
         """Return fields (m, n) on another mesh, in a frame ``stretch`` times larger."""
         old, n = self.mesh, mesh.nodes.size
         result = np.empty((len(fields), n))
         transfer(
-            fields, old.nodes[-1], old.edge_spacing, old.growth, stretch, mesh.nodes,
-            np.empty((7, n)), result,
+            fields, old.nodes[-1], old.edge_spacing, old.growth, self.clock["frame"] * old.decay,
+            stretch, mesh.nodes, np.empty((7, n)), result,
         )  # fmt: skip
         return result
 
     def settle(self) -> tuple[float, ...]:
         """Equilibrate at frozen memory and return the state as ``RECORD_FIELDS`` lists it."""
         mesh, clock = self.mesh, self.clock
+        self.tabulate(float(clock["frame"]))
         height_at, profile, law, potential = self.functions
         n, frame = mesh.nodes.size, clock["frame"]
         tip, pressure, scratch = np.empty(n), np.empty(n), np.empty(n)
@@ -228,6 +251,7 @@ class Surface:
         mesh, frame, deflection = self.mesh, self.clock["frame"], self.clock["deflection"]
         h0 = self.functions[0](self.time, self.parameters.height) + deflection
         load = self.fields[LOAD]
+        self.tabulate(float(frame))
         elastic = np.pi * frame * self.parameters.compliance[0] * (load @ mesh.stiffness @ load)
 
         def density(radius, deformation):
