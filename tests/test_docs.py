@@ -133,6 +133,48 @@ def test_classes_run_in_the_papers_solver_too(extending):
         assert float(extending.curve[name]) == pytest.approx(float(other[name]), rel=2e-3)
 
 
+def test_the_skin_of_the_extending_page_answers_as_two_layers_do(extending):
+    # Incompressible layers in the Hankel domain, at unit wavenumber: the vertical displacement w is
+    # a sum of (1, z) e^(±z), the horizontal one w', the shear stress w + w'' in shear moduli, and
+    # the normal one 2w' - (w''' - w').
+    def rows(z, sign, modulus):
+        w = [
+            np.array([sign**k, sign**k * z + k * sign ** abs(k - 1)]) * np.exp(sign * z)
+            for k in range(4)
+        ]
+        normal = modulus * (2 * w[1] - (w[3] - w[1]))
+        return np.array([w[0], w[1], modulus * (w[0] + w[2]), normal])
+
+    for ratio in (0.1, 3.0, 50.0):
+        body = replace(extending.coated.sample, ratio=ratio)
+        for thickness in (0.05, 0.5, 2.0):
+            top = np.hstack([rows(0.0, -1, 1.0), rows(0.0, 1, 1.0)])[2:]
+            skin = np.hstack([rows(thickness, -1, 1.0), rows(thickness, 1, 1.0)])
+            base = rows(thickness, -1, ratio)
+            system = np.vstack([np.hstack([top, np.zeros((2, 2))]), np.hstack([skin, -base])])
+            found = np.linalg.solve(system, [0, 1, 0, 0, 0, 0])
+            alone = np.linalg.solve(rows(0.0, -1, 1.0)[2:], [0, 1])
+            answer = (found[0] + found[2]) / alone[0]
+            factor = body.factor(np.array([thickness]))[0]
+            assert factor == pytest.approx(answer, rel=1e-10)
+
+
+def test_the_skin_of_the_extending_page_is_tapped(extending):
+    tap = extending.tap
+    plain = replace(extending.coated, sample=extending.rubber)
+    alone = sa.tapping_cycle(plain, amplitude=20e-9, mean_height=18.5e-9, frequency=200e3)
+    assert float(tap.force_max) > 1.02 * float(alone.force_max)
+    lost = np.trapezoid(tap.viscous_power, tap.time) + float(tap.jump_energy.sum())
+    assert lost == pytest.approx(float(tap.dissipation), rel=0.02)
+    for wrong, message in (
+        ({"thickness": 0.0}, "^thickness = 0 m: must be greater than 0$"),
+        ({"ratio": -1.0}, "^ratio = -1: must be greater than 0$"),
+        ({"sample": sa.Elastic(1e9, 0.3)}, "^sample.poisson = 0.3: must be 0.5 in a skin$"),
+    ):
+        with pytest.raises(ValueError, match=message):
+            replace(extending.coated.sample, **wrong)
+
+
 def test_the_motion_of_the_extending_page_bounces(extending):
     curve = sa.force_distance(extending.contact, extending.bounces)
     deep = curve.tip_height.values < 0
