@@ -74,7 +74,7 @@ class Stiffness:
             self.entries = np.stack([_matrix(self._operator, i) for i in range(first, last)])
 
 
-@lru_cache(maxsize=512)
+@lru_cache(maxsize=256)
 def _matrix(operator: _Operator, index: int) -> np.ndarray:
     body, mesh = operator.body, operator.mesh
     frame = 1.0 if isinf(body.length) else body.length * np.exp(STEP * index)
