@@ -14,7 +14,7 @@ from rich.table import Table
 
 from softafm.draw.results import plot
 from softafm.experiment.config import load_experiment
-from softafm.units.quantities import readable
+from softafm.units.quantities import write_quantity
 
 SPEEDS = ("5 um/s", "2 um/s", "1 um/s")
 OBSERVABLES = ("force_max", "force_min", "loop_energy", "virial", "dissipation")
@@ -36,12 +36,12 @@ def table_of(runs: dict[str, tuple[xr.Dataset, float]]) -> Table:
         table.add_column(name, justify="right")
     for key in OBSERVABLES:
         cells = [
-            readable(float(run[key]), run[key].units) if key in run else "-"
+            write_quantity(float(run[key]), run[key].units) if key in run else "-"
             for run, _ in runs.values()
         ]
         table.add_row(key.replace("_", " "), *cells)
     table.add_row("elastic jumps", *(str(run.sizes["jump"]) for run, _ in runs.values()))
-    table.add_row("time taken", *(readable(seconds, "s") for _, seconds in runs.values()))
+    table.add_row("time taken", *(write_quantity(seconds, "s") for _, seconds in runs.values()))
     return table
 
 

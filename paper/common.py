@@ -24,7 +24,7 @@ from rich.table import Table
 import softafm as sa
 from softafm import solvers
 from softafm.draw.results import COLOURS
-from softafm.units.quantities import readable
+from softafm.units.quantities import write_quantity
 
 ROOT = Path(__file__).parents[1]
 OUTPUT = ROOT / "paper-output"
@@ -124,7 +124,7 @@ def attempt(run: Callable) -> Outcome:
             why = "no convergence" if "converge" in str(error) else "blew up"
             return Outcome(
                 past.time, past.tip_height, past.force, {}, perf_counter() - started,
-                f"{why} at {readable(last, 's')}", bool(caught),
+                f"{why} at {write_quantity(last, 's')}", bool(caught),
             )  # fmt: skip
         seconds = perf_counter() - started
     scalars = {str(name): float(v) for name, v in result.data_vars.items() if v.ndim == 0}

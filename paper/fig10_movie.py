@@ -15,9 +15,9 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
 import softafm as sa
-from softafm.draw.scene_parts import SAMPLE_COLOURS, scales
-from softafm.draw.scenes import scenes_at, view_of, window
-from softafm.draw.storyboard import instants_of
+from softafm.draw.scene_parts import SAMPLE_COLOURS, choose_scales
+from softafm.draw.scenes import choose_view, choose_window, interpolate_scenes
+from softafm.draw.storyboard import choose_instants
 
 AMPLITUDE, MEAN_HEIGHT, FREQUENCY = 49.6e-9, 46e-9, 278e3
 FRAMES = 12
@@ -34,7 +34,7 @@ def main(progress=None):
         )
         for solver in common.tracked(solvers.values(), progress, lambda solver: "running the tap")
     )  # fmt: skip
-    instants = instants_of(tap, FRAMES, *window(tap, margin=0.05))
+    instants = choose_instants(tap, FRAMES, *choose_window(tap, margin=0.05))
     report_frames(tap, setup_e, instants)
     report_strokes(tap)
     common.save_figure(draw(tap, setup_e, instants), "fig10_movie")
@@ -43,7 +43,7 @@ def main(progress=None):
 
 def report_frames(tap, setup_e, instants):
     """What each picture shows, and how far setup E's surface is from it."""
-    ours, theirs = (scenes_at(run, instants) for run in (tap, setup_e))
+    ours, theirs = (interpolate_scenes(run, instants) for run in (tap, setup_e))
     time = tap["time"].values
     rows = []
     for i, instant in enumerate(instants):
@@ -92,8 +92,8 @@ def report_strokes(tap):
 def draw(tap, setup_e, instants):
     """The twelve pictures, with setup E's surface over them."""
     figure = sa.plot_profiles(tap, FRAMES)
-    across, along = scales(view_of(tap, instants[0], instants[-1], shape=1.15))
-    scenes = scenes_at(setup_e, instants)
+    across, along = choose_scales(choose_view(tap, instants[0], instants[-1], shape=1.15))
+    scenes = interpolate_scenes(setup_e, instants)
     radius = across * np.concatenate([-scenes.r[::-1], scenes.r])
     for ax, surface in zip(figure.axes, scenes.surface, strict=True):
         height = along * np.concatenate([surface[::-1], surface])

@@ -19,7 +19,7 @@ import numpy as np
 from matplotlib.lines import Line2D
 
 import softafm as sa
-from softafm.draw.approach_data import jumps_of
+from softafm.draw.approach_data import find_jumps
 from softafm.draw.results import COLOURS
 
 POLYSTYRENE = sa.Contact(
@@ -83,7 +83,7 @@ def report_jumps(fine):
     """Where the sweeps jump, and the ranges of amplitude ratios in which two states are stable."""
     rows = []
     for direction in ("approach", "retract"):
-        for pair in jumps_of(fine, direction):
+        for pair in find_jumps(fine, direction):
             height = float(fine["sweep_height"].values[list(pair)].mean())
             ends = [
                 [fine[f"{direction}_{name}"].values[i] for i in pair]
@@ -202,7 +202,7 @@ def draw(fine, known):
 
 def sweep(ax, fine, direction, x, y, colour):
     """Draw what a sweep records, its jumps as arrows."""
-    jumps = jumps_of(fine, direction)
+    jumps = find_jumps(fine, direction)
     for before, after in jumps:
         arrow = {"arrowstyle": "-|>", "color": colour, "linewidth": 1.2, "shrinkA": 0, "shrinkB": 0}
         ax.annotate("", (x[after], y[after]), (x[before], y[before]), arrowprops=arrow)

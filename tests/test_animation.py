@@ -17,8 +17,8 @@ from PIL import Image
 
 import softafm as sa
 from softafm.cli import main
-from softafm.draw.scenes import scenes_at, view_of, window
-from softafm.draw.storyboard import instants_of
+from softafm.draw.scenes import choose_view, choose_window, interpolate_scenes
+from softafm.draw.storyboard import choose_instants
 from softafm.experiment.config import example_text
 
 LDPE = sa.Contact(
@@ -117,7 +117,7 @@ def any_ffmpeg(stand_in):
 
 
 def test_the_tip_is_rigid_and_where_the_run_had_it(tap):
-    scenes = scenes_at(tap, tap["time"].values)
+    scenes = interpolate_scenes(tap, tap["time"].values)
     profile = tap["r"].values ** 2 / (2 * 10e-9)
     expected = tap["tip_height"].values[:, None] + profile
     assert scenes.tip == pytest.approx(expected, rel=1e-9, abs=1e-18)
@@ -127,7 +127,7 @@ def test_the_tip_is_rigid_and_where_the_run_had_it(tap):
 
 def test_between_steps_shapes_and_force_are_interpolated():
     result = made_up(surface=[0, 2e-9, 4e-9], height=[9e-9, 5e-9, 7e-9])
-    scenes = scenes_at(result, np.array([0.25, 1.5, 2.0]))
+    scenes = interpolate_scenes(result, np.array([0.25, 1.5, 2.0]))
     assert scenes.surface[:, 3] == pytest.approx([0.5e-9, 3e-9, 4e-9])
     assert scenes.tip[:, 0] == pytest.approx([8e-9, 6e-9, 7e-9])
     assert scenes.force == pytest.approx([5e-9, 30e-9, 40e-9])
@@ -136,7 +136,7 @@ def test_between_steps_shapes_and_force_are_interpolated():
 
 def test_a_jump_is_never_interpolated():
     result = made_up([0, 1e-9, 5e-9, 6e-9], [9e-9, 8e-9, 7e-9, 6e-9], jump_time=[2.0])
-    scenes = scenes_at(result, np.array([0.5, 1.0, 1.5, 2 - 1e-12, 2.0, 2.5, 3.0]))
+    scenes = interpolate_scenes(result, np.array([0.5, 1.0, 1.5, 2 - 1e-12, 2.0, 2.5, 3.0]))
     heights = scenes.surface[:, 0] * 1e9
     assert heights == pytest.approx([0.5, 1, 1, 1, 5, 5.5, 6])
     assert scenes.tip[:, 0] * 1e9 == pytest.approx([8.5, 8, 8, 8, 7, 6.5, 6])
@@ -150,13 +150,13 @@ def test_no_scene_of_a_run_with_jumps_mixes_their_two_sides(ramp):
         step = int(np.searchsorted(time, jump))
         before, after = ramp["deformation"].values[[step - 1, step]]
         assert np.abs(after - before).max() > 0.2e-9
-        scenes = scenes_at(ramp, np.linspace(time[step - 1], time[step], 20))
+        scenes = interpolate_scenes(ramp, np.linspace(time[step - 1], time[step], 20))
         assert np.array_equal(scenes.surface[:-1], np.repeat(before[None], 19, axis=0))
         assert np.array_equal(scenes.surface[-1], after)
 
 
 def test_the_window_of_a_tap_holds_the_contact_and_little_else(tap):
-    start, stop = window(tap)
+    start, stop = choose_window(tap)
     time, force = tap["time"].values, np.abs(tap["force"].values)
     felt = time[force > 0.02 * force.max()]
     assert start < felt[0]
@@ -170,31 +170,31 @@ def test_a_surface_that_creeps_for_ever_does_not_hold_the_movie_up():
     contact = (time > 400) & (time < 500)
     creeping = made_up(-5e-9 * np.exp(-np.abs(time - 450) / 2000), np.where(contact, -6e-9, 9e-9))
     creeping["force"] = ("time", np.where(contact, 1e-9, 0.0))
-    assert window(creeping) == pytest.approx((381.4, 618.6), abs=2)
+    assert choose_window(creeping) == pytest.approx((381.4, 618.6), abs=2)
 
 
 def test_the_window_of_several_taps_is_in_the_last():
     contact = sa.Contact(LDPE.tip, sa.Elastic(1e9, poisson=0.3), LDPE.surface)
     taps = sa.tapping_cycle(contact, 5e-9, 4.5e-9, 278e3, cycles=3, profiles=True, tolerance=0.1)
-    start, stop = window(taps)
+    start, stop = choose_window(taps)
     assert 2 / 278e3 < start < 2.5 / 278e3 < stop < 3 / 278e3
-    assert window(taps, start=0.0)[0] == 0.0
-    assert window(taps, start=0.0)[1] > 2.5 / 278e3
+    assert choose_window(taps, start=0.0)[0] == 0.0
+    assert choose_window(taps, start=0.0)[1] > 2.5 / 278e3
 
 
 def test_start_and_stop_restrict_the_window(tap):
-    assert window(tap, 1.5e-6, 1.7e-6) == (1.5e-6, 1.7e-6)
-    start, stop = window(tap)
-    assert window(tap, start=1.8e-6) == pytest.approx((1.8e-6, stop), rel=0.05)
-    assert window(tap, stop=1.8e-6) == pytest.approx((start, 1.8e-6), rel=0.05)
+    assert choose_window(tap, 1.5e-6, 1.7e-6) == (1.5e-6, 1.7e-6)
+    start, stop = choose_window(tap)
+    assert choose_window(tap, start=1.8e-6) == pytest.approx((1.8e-6, stop), rel=0.05)
+    assert choose_window(tap, stop=1.8e-6) == pytest.approx((start, 1.8e-6), rel=0.05)
     whole = float(tap["time"][0]), float(tap["time"][-1])
-    assert window(tap, -1.0, 1.0) == whole
+    assert choose_window(tap, -1.0, 1.0) == whole
 
 
 def test_nothing_moves_and_all_is_shown(tmp_path):
     still = made_up(np.zeros(5), np.full(5, 3e-9))
-    assert window(still) == (0.0, 4.0)
-    view = view_of(still, 0.0, 4.0, shape=2.0)
+    assert choose_window(still) == (0.0, 4.0)
+    view = choose_view(still, 0.0, 4.0, shape=2.0)
     assert view.bottom < 0 < 3e-9 < view.top
     assert view.stretch == 1
     sa.animate(still, tmp_path / "still.gif", frames=4, seconds=1)
@@ -203,8 +203,8 @@ def test_nothing_moves_and_all_is_shown(tmp_path):
 
 
 def test_the_view_holds_tip_and_surface_in_true_proportions(tap):
-    start, stop = window(tap)
-    view = view_of(tap, start, stop, shape=2.2)
+    start, stop = choose_window(tap)
+    view = choose_view(tap, start, stop, shape=2.2)
     surface = tap["deformation"].values
     assert view.stretch == 1
     assert view.bottom < surface.min()
@@ -218,7 +218,7 @@ def test_under_a_blunt_tip_heights_are_stretched():
     blunt = sa.Contact(sa.Paraboloid(10e-6), sa.Elastic(5e9, poisson=0.3), LDPE.surface)
     motion = sa.Triangle(3e-9, -2e-9, 1e-6)
     result = sa.force_distance(blunt, motion, profiles=True, tolerance=0.1)
-    view = view_of(result, *window(result), shape=2.2)
+    view = choose_view(result, *choose_window(result), shape=2.2)
     assert view.stretch >= 5
     assert view.top - view.bottom < 0.2 * view.half_width
     (ax, *_) = sa.plot_profiles(result).axes
@@ -249,14 +249,14 @@ def test_a_gif_holds_its_frames_and_lasts_its_time(tap, tmp_path):
 def test_a_gif_shows_the_tip_where_it_is(tap, tmp_path):
     """The middle column of the stage: grey from its top down to the apex, then gap and sample."""
     sa.animate(tap, tmp_path / "tap.gif", frames=2, start=1.55e-6, stop=2.3e-6)
-    view = view_of(tap, 1.55e-6, 2.3e-6, shape=0.895 * 8 / (0.6 * 5.5))
+    view = choose_view(tap, 1.55e-6, 2.3e-6, shape=0.895 * 8 / (0.6 * 5.5))
     with Image.open(tmp_path / "tap.gif") as movie:
         picture = np.asarray(movie.convert("RGB"), int)
     column = picture[:, round(800 * (0.09 + 0.895 / 2)) + 15]
     top, height = 550 * (1 - 0.38 - 0.6), 550 * 0.6
     grey = np.flatnonzero(np.all(column == (0xB3, 0xB3, 0xB3), axis=1))
     grey = grey[grey < top + height]
-    scene = scenes_at(tap, np.array([1.55e-6]))
+    scene = interpolate_scenes(tap, np.array([1.55e-6]))
     beside = 15 / (800 * 0.895) * 2 * view.half_width
     apex = np.interp(beside, scene.r, scene.tip[0])
     expected = top + height * (view.top - apex) / (view.top - view.bottom)
@@ -273,7 +273,7 @@ def test_a_page_stands_alone_and_holds_the_shapes(tap, tmp_path):
     assert len(page) < 200_000
 
     data = page_data(path)
-    scenes = scenes_at(tap, np.linspace(*window(tap), 40))
+    scenes = interpolate_scenes(tap, np.linspace(*choose_window(tap), 40))
     surface = np.array(data["surface"]) * data["quantum"]
     assert surface.shape == (40, len(data["r"]))
     shown = np.array([np.interp(data["r"], scenes.r * 1e9, row) for row in scenes.surface]) * 1e9
@@ -436,7 +436,7 @@ def test_the_example_of_the_movies_page_runs(tmp_path, monkeypatch):
 
 
 def test_six_instants_lead_to_the_lowest_height_and_six_away(tap):
-    instants = instants_of(tap, 12, *window(tap))
+    instants = choose_instants(tap, 12, *choose_window(tap))
     heights = np.interp(instants, tap["time"], tap["tip_height"])
     assert np.all(np.diff(instants) > 0)
     assert np.all(np.diff(heights[:6]) < 0)
@@ -445,7 +445,7 @@ def test_six_instants_lead_to_the_lowest_height_and_six_away(tap):
 
 
 def test_the_instants_show_both_sides_of_a_snap(ramp):
-    instants = instants_of(ramp, 12, *window(ramp))
+    instants = choose_instants(ramp, 12, *choose_window(ramp))
     time = ramp["time"].values
     for jump in ramp["jump_time"].values:
         step = int(np.searchsorted(time, jump))
@@ -457,7 +457,7 @@ def test_the_instants_show_both_sides_of_a_snap(ramp):
 
 def test_a_tip_that_only_comes_down_fills_all_pictures():
     down = made_up(np.linspace(0, -2e-9, 20), np.linspace(3e-9, -2e-9, 20))
-    instants = instants_of(down, 12, 0.0, 19.0)
+    instants = choose_instants(down, 12, 0.0, 19.0)
     assert instants == pytest.approx(np.linspace(0, 19, 12))
 
 
@@ -481,7 +481,7 @@ def test_the_pictures_say_when_how_strong_and_where_the_tip_goes(tap):
 
 def test_the_surface_does_what_the_paper_describes(tap):
     """Section 5: it bulges to the coming tip, clings to the going one, and is wider in contact."""
-    scenes = scenes_at(tap, instants_of(tap, 12, *window(tap)))
+    scenes = interpolate_scenes(tap, choose_instants(tap, 12, *choose_window(tap)))
     bulge = scenes.surface.max(axis=1)
     assert 0.05e-9 < bulge[1] < 0.6e-9
     assert bulge[6:10].max() > 1.5e-9

@@ -2,7 +2,8 @@
 
 import pytest
 
-from softafm.app.form import MODES, Alternatives, section, tables
+from softafm.app.form import Alternatives, describe_section, list_tables
+from softafm.modes import MODES
 
 FOCUSED = """() => {
   let at = document.activeElement;
@@ -31,7 +32,7 @@ def until(page, difference):
 def asked(table, choice, way, mode):
     """Return the paths of what a section asks for, with its alternatives given in a way."""
     found = set()
-    for entry in section(table, choice or None, mode).entries:
+    for entry in describe_section(table, choice or None, mode).entries:
         several = isinstance(entry, Alternatives)
         fields = entry.ways[min(way, len(entry.ways) - 1)] if several else (entry,)
         found |= {f"{table}.{field.name}" for field in fields}
@@ -43,12 +44,14 @@ def rounds(mode):
 
     What a tip, sample, surface and solver may be does not depend on the mode.
     """
-    offered = {table: section(table, None, mode).choices for table in tables(mode)}
-    for table in ("tip", "sample", "surface", "solver") if mode != MODES[0] else ():
+    offered = {table: describe_section(table, None, mode).choices for table in list_tables(mode)}
+    for table in ("tip", "sample", "surface", "solver") if mode != "force-distance" else ():
         offered[table] = offered[table][:1]
     for index in range(max(map(len, offered.values()))):
         chosen = {table: names[min(index, len(names) - 1)] for table, names in offered.items()}
-        entries = [e for t, name in chosen.items() for e in section(t, name or None, mode).entries]
+        entries = [
+            e for t, name in chosen.items() for e in describe_section(t, name or None, mode).entries
+        ]
         for way in range(max([len(e.ways) for e in entries if isinstance(e, Alternatives)] + [1])):
             yield chosen, way
 

@@ -12,14 +12,14 @@ import xarray as xr
 from PIL import Image
 
 import softafm as sa
-from softafm.app.documents import with_value
-from softafm.app.form import presets
-from softafm.app.links import from_query
-from softafm.app.movie import FRAMES, movie_of
-from softafm.draw.summary import observables
+from softafm.app.documents import replace_value
+from softafm.app.form import read_presets
+from softafm.app.links import read_query
+from softafm.app.movie import FRAMES, make_movie
+from softafm.draw.summary import list_observables
 from softafm.experiment import config
 
-TAP = presets()["ldpe-tapping"]
+TAP = read_presets()["ldpe-tapping"]
 
 DATA = """() => Object.fromEntries(
   [...Bokeh.index.all_views()].map(view => view.model)
@@ -42,7 +42,7 @@ def python(document):
 
 @pytest.fixture(scope="module")
 def tap():
-    return python(with_value(TAP, "run.profiles", True))
+    return python(replace_value(TAP, "run.profiles", True))
 
 
 @pytest.fixture(scope="module")
@@ -92,7 +92,7 @@ def test_a_preset_is_run_at_once_and_gives_what_python_gives(site, visit, tap, r
     assert_curves_are_of(page, "1 ldpe-tapping", tap)
     tab(page, "Numbers")
     page.get_by_text("1 ldpe-tapping", exact=True).wait_for()
-    cells = [str(cell) for column in observables(tap).columns for cell in column.cells]
+    cells = [str(cell) for column in list_observables(tap).columns for cell in column.cells]
     shown = page.locator("td").all_inner_texts()
     assert len(cells) > 20
     assert sorted(shown) == sorted(cells)
@@ -103,8 +103,8 @@ def test_a_changed_value_changes_the_curves_the_address_and_not_the_others(site,
     page.locator(".field-sample-E_inf input").fill("0.2 GPa")
     page.wait_for_url("**E_inf=0.2+GPa**")
     ran(page)
-    changed = with_value(TAP, "sample.E_inf", "0.2 GPa")
-    assert from_query(page.url.partition("?")[2]) == changed
+    changed = replace_value(TAP, "sample.E_inf", "0.2 GPa")
+    assert read_query(page.url.partition("?")[2]) == changed
     result = python(changed)
     assert_curves_are_of(page, "1 tapping-cycle", result)
 
@@ -142,7 +142,7 @@ def test_the_movie_plays_and_its_marker_follows_the_slider(site, visit, tap, rec
     record_property("movie", f"{1000 * frames / (now - began):.0f} frames/s of {FRAMES / 6:.0f}")
     page.get_by_role("button", name="❚❚").click()
     page.get_by_role("button", name="▶").wait_for()
-    shown = movie_of(tap, FRAMES).frames
+    shown = make_movie(tap, FRAMES).frames
     for key, index in (("End", FRAMES - 1), ("Home", 0), ("ArrowRight", 1)):
         page.locator(".noUi-handle").press(key)
         page.wait_for_function(
@@ -176,7 +176,7 @@ def test_files_taken_away_hold_the_run_and_come_back(site, visit, tap, tmp_path)
         assert min(picture.size) > 300
     assert ElementTree.parse(taken("svg")).getroot().tag.endswith("svg")
     toml = taken("toml")
-    filmed = with_value(TAP, "run.profiles", True)
+    filmed = replace_value(TAP, "run.profiles", True)
     assert tomllib.loads(toml.read_text(encoding="utf-8")) == filmed
 
     page = visit(site.address)
@@ -201,7 +201,7 @@ def test_a_link_opens_the_same_form_for_someone_else(site, visit):
     lines = page.locator("pre", has_text="import softafm").text_content()
     found = {}
     exec(lines, found)
-    filmed = with_value(presets()["pdms-sphere"], "tip.radius", "7 um") | {
+    filmed = replace_value(read_presets()["pdms-sphere"], "tip.radius", "7 um") | {
         "run": {"profiles": True}
     }
     xr.testing.assert_equal(found["result"], python(filmed))
@@ -210,7 +210,7 @@ def test_a_link_opens_the_same_form_for_someone_else(site, visit):
         assert_holds(other.locator(".field-tip-radius input"), "7 um")
         assert other.locator(".field-cantilever-stiffness input").input_value() != ""
         assert other.locator("ul.runs li").count() == 0
-    assert from_query(other.url.partition("?")[2]) == filmed
+    assert read_query(other.url.partition("?")[2]) == filmed
 
 
 @pytest.mark.parametrize(

@@ -7,13 +7,13 @@ from pathlib import Path
 
 import pytest
 
-from softafm.app.documents import with_value
-from softafm.app.form import presets
-from softafm.app.links import to_query
+from softafm.app.documents import replace_value
+from softafm.app.form import read_presets
+from softafm.app.links import write_query
 from softafm.cli import main
 
-LONG = with_value(presets()["ldpe-tapping"], "motion.cycles", 40_000)
-LONG = with_value(LONG, "run.tolerance", 1e-3)  # for half a minute
+LONG = replace_value(read_presets()["ldpe-tapping"], "motion.cycles", 40_000)
+LONG = replace_value(LONG, "run.tolerance", 1e-3)  # for half a minute
 
 
 @pytest.fixture(scope="module")
@@ -27,7 +27,7 @@ def site(serve):
 @pytest.fixture
 def long(site, visit):
     """A page on which a long run has begun."""
-    page = visit(f"{site.address}?{to_query(LONG)}")
+    page = visit(f"{site.address}?{write_query(LONG)}")
     page.locator("input.movie").uncheck()
     page.locator("button.run").click()
     page.locator(".run-running progress").wait_for()

@@ -14,8 +14,8 @@ from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
 from softafm.app.colours import PALETTES, RUNS
-from softafm.app.curve_data import thinned
-from softafm.app.curves import Shown, figures, recolour
+from softafm.app.curve_data import thin
+from softafm.app.curves import Shown, draw_figures, recolour
 from softafm.experiment import config
 
 
@@ -57,7 +57,7 @@ def drawn(renderer):
     ],
 )
 def test_a_mode_has_its_tabs_and_they_can_be_sent(results, name, titles):
-    tabs = figures(shown(results, name), "light")
+    tabs = draw_figures(shown(results, name), "light")
     assert list(tabs) == titles
     document = Document()
     for tab in tabs.values():
@@ -67,7 +67,7 @@ def test_a_mode_has_its_tabs_and_they_can_be_sent(results, name, titles):
 
 def test_curves_are_those_of_the_result_in_units_one_reads(results):
     result = results["ldpe-tapping"]
-    (panel,) = panels(figures(shown(results, "ldpe-tapping"), "light")["Force–distance"])
+    (panel,) = panels(draw_figures(shown(results, "ldpe-tapping"), "light")["Force–distance"])
     assert panel.xaxis[0].axis_label == "Tip height (nm)"
     assert panel.yaxis[0].axis_label == "Force on the tip (nN)"
     ((x, y), (x_back, y_back)) = (
@@ -82,7 +82,7 @@ def test_curves_are_those_of_the_result_in_units_one_reads(results):
 
 def test_elastic_jumps_are_marked_where_they_happened(results):
     result = results["pdms-sphere"]
-    (panel,) = panels(figures(shown(results, "pdms-sphere"), "light")["Force–distance"])
+    (panel,) = panels(draw_figures(shown(results, "pdms-sphere"), "light")["Force–distance"])
     (jumps,) = lines(panel, "elastic jump")
     after = result.sel(time=result.jump_time.values, method="nearest")
     x, y = drawn(jumps)
@@ -91,7 +91,7 @@ def test_elastic_jumps_are_marked_where_they_happened(results):
 
 
 def test_the_time_tab_shows_what_a_lever_does_on_one_axis(results):
-    tab = figures(shown(results, "ldpe-spectroscopy"), "light")["Time"]
+    tab = draw_figures(shown(results, "ldpe-spectroscopy"), "light")["Time"]
     labels = [panel.yaxis[0].axis_label for panel in panels(tab)]
     assert labels == [
         "Force on the tip (nN)", "Tip height (nm)", "Deflection (pm)", "Contact radius (nm)"
@@ -101,7 +101,7 @@ def test_the_time_tab_shows_what_a_lever_does_on_one_axis(results):
 
 def test_a_sweep_shows_its_jumps_and_all_solutions(results):
     result = results["ps-approach-curve"]
-    tabs = figures(shown(results, "ps-approach-curve"), "light")
+    tabs = draw_figures(shown(results, "ps-approach-curve"), "light")
     amplitude, phase = panels(tabs["Amplitude and phase"])
     assert phase.xaxis[0].axis_label == "Mean height of the tip, Z (nm)"
     x, y = drawn(lines(phase, ", approach")[0])
@@ -117,7 +117,7 @@ def test_a_sweep_shows_its_jumps_and_all_solutions(results):
 
 
 def test_hover_tells_run_values_and_units(results):
-    (panel,) = panels(figures(shown(results, "ldpe-tapping"), "light")["Force–distance"])
+    (panel,) = panels(draw_figures(shown(results, "ldpe-tapping"), "light")["Force–distance"])
     (hover,) = panel.select({"type": HoverTool})
     assert hover.tooltips == [
         ("Run", "$name"),
@@ -129,7 +129,7 @@ def test_hover_tells_run_values_and_units(results):
 
 def test_runs_overlay_in_their_colours_and_common_units(results):
     both = shown(results, "ldpe-tapping", "attard-triangle")
-    tabs = figures([*both, *shown(results, "ps-approach-curve")], "light")
+    tabs = draw_figures([*both, *shown(results, "ps-approach-curve")], "light")
     assert len(tabs) == 4
     (panel,) = panels(tabs["Force–distance"])
     assert panel.yaxis[0].axis_label == "Force on the tip (µN)"
@@ -145,14 +145,14 @@ def test_runs_overlay_in_their_colours_and_common_units(results):
 def test_a_label_is_text_wherever_it_stands(results):
     label = "<img src=x onerror=alert(1)> @force{safe} $$x$$"
     run = Shown(label, RUNS[0], results["ldpe-tapping"])
-    (panel,) = panels(figures([run], "light")["Force–distance"])
+    (panel,) = panels(draw_figures([run], "light")["Force–distance"])
     (hover,) = panel.select({"type": HoverTool})
     assert "img" not in str(hover.tooltips)
     assert any("img" in (renderer.name or "") for renderer in hover.renderers)
 
 
 def test_a_theme_can_be_changed(results):
-    tab = figures(shown(results, "ldpe-tapping", "ldpe-movie"), "light")["Time"]
+    tab = draw_figures(shown(results, "ldpe-tapping", "ldpe-movie"), "light")["Time"]
     recolour(tab, "dark")
     for axis in tab.select({"type": Axis}):
         assert axis.major_label_text_color == PALETTES["dark"].text
@@ -165,15 +165,15 @@ def test_a_theme_can_be_changed(results):
 
 def test_nothing_to_draw_makes_no_tabs(results):
     empty = results["ps-approach-curve"].isel(sweep_height=slice(0))
-    assert figures([Shown("empty", RUNS[0], empty)], "light") == {}
-    assert figures([], "dark") == {}
+    assert draw_figures([Shown("empty", RUNS[0], empty)], "light") == {}
+    assert draw_figures([], "dark") == {}
 
 
 def test_a_long_history_is_thinned_to_what_can_be_seen(results):
     result = results["ldpe-tapping"]
     fine = np.linspace(0, float(result.time[-1]), 200_000)
     long = result.interp(time=fine)
-    (panel,) = panels(figures([Shown("long", RUNS[0], long)], "light")["Force–distance"])
+    (panel,) = panels(draw_figures([Shown("long", RUNS[0], long)], "light")["Force–distance"])
     kept = [drawn(lines(panel, stroke)[0]) for stroke in ("approach", "retract")]
     assert sum(x.size for x, _ in kept) <= 20_002
     force = np.concatenate([y for _, y in kept])
@@ -185,7 +185,7 @@ def test_thinning_keeps_the_shape_of_many_cycles():
     time = np.linspace(0, 60, 12_001)
     phase = np.pi * (1 + np.sin(0.3 + 2 * np.pi * time))
     height, force = np.cos(phase) + 0.1 * np.sin(3 * phase), np.exp(np.sin(phase))
-    kept = thinned(time, [time, height, force], 6000)
+    kept = thin(time, [time, height, force], 6000)
     assert kept.size <= 6000
     for values in (height, force):
         again = np.interp(time, time[kept], values[kept])
@@ -194,7 +194,7 @@ def test_thinning_keeps_the_shape_of_many_cycles():
 
 @given(arrays(float, st.tuples(st.just(2), st.integers(1, 3000)), elements=st.floats(-1e3, 1e3)))
 def test_thinning_keeps_ends_and_extremes(columns):
-    kept = thinned(np.arange(columns.shape[1]) // 2, list(columns), 100)
+    kept = thin(np.arange(columns.shape[1]) // 2, list(columns), 100)
     assert kept.size <= 100
     assert (kept[0], kept[-1]) == (0, columns.shape[1] - 1)
     assert np.all(np.diff(kept) > 0)

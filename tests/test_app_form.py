@@ -7,29 +7,37 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from softafm.app.answers import added, chosen, moded, taken
-from softafm.app.documents import ordered, read_text, value_at, with_value, without, written_text
-from softafm.app.form import MODES, Alternatives, Field, preset_titles, presets, section, tables
-from softafm.app.marks import MISSING, placed, with_missing
-from softafm.app.outlook import cost, outlook, problems, summary
-from softafm.app.plan import plan_of, shown_sections
+from softafm.app.answers import add_part, change_mode, choose, take_way
+from softafm.app.documents import arrange, find_value, read_text, remove, replace_value, write_text
+from softafm.app.form import (
+    Alternatives,
+    Field,
+    describe_section,
+    list_tables,
+    read_preset_titles,
+    read_presets,
+)
+from softafm.app.marks import MISSING, add_missing, place
+from softafm.app.outlook import estimate_cost, find_problems, foresee, summarise
+from softafm.app.plan import list_sections, make_plan
 from softafm.app.uploads import keep
 from softafm.experiment import schema
 from softafm.experiment.config import example_names, experiment_from
 from softafm.experiment.regime import expected_seconds, regime
+from softafm.modes import MODES
 
 HERE = Path()
-TAP = presets()["ldpe-tapping"]
+TAP = read_presets()["ldpe-tapping"]
 EVERY = [
     (mode, table, choice)
     for mode in MODES
-    for table in (*tables(mode), "surface.parts")
-    for choice in section(table, None, mode).choices
+    for table in (*list_tables(mode), "surface.parts")
+    for choice in describe_section(table, None, mode).choices
 ]
 
 
 def shown_of(document, path):
-    return {one.path: one for one in shown_sections(document, {})}[path]
+    return {one.path: one for one in list_sections(document, {})}[path]
 
 
 def sample(**keys):
@@ -38,7 +46,7 @@ def sample(**keys):
 
 @pytest.mark.parametrize(("mode", "table", "choice"), EVERY)
 def test_every_field_has_a_label_a_help_text_and_an_example(mode, table, choice):
-    for field in section(table, choice or None, mode).fields.values():
+    for field in describe_section(table, choice or None, mode).fields.values():
         assert field.label
         assert len(field.help) > 8, field
         assert "``" not in field.help
@@ -48,20 +56,20 @@ def test_every_field_has_a_label_a_help_text_and_an_example(mode, table, choice)
 
 def test_the_form_offers_what_the_schema_knows():
     for table, (chooser, choices) in schema.CHOICES.items():
-        shape = section(table, None, "force-distance")
+        shape = describe_section(table, None, "force-distance")
         assert (shape.chooser, shape.choices) == (chooser, tuple(choices))
         for choice, made in choices.items():
-            fields = section(table, choice, "force-distance").fields
+            fields = describe_section(table, choice, "force-distance").fields
             assert set(fields) == set(made.model_fields)
-    for mode, shapes in schema.MOTIONS.items():
-        assert section("motion", None, mode).choices == tuple(shapes)
-        assert ("cantilever" in tables(mode)) == (mode in schema.CANTILEVERS)
-    assert "sum" not in section("surface.parts", None, "force-distance").choices
+    for name, mode in MODES.items():
+        assert describe_section("motion", None, name).choices == tuple(schema.motions_of(mode))
+        assert ("cantilever" in list_tables(name)) == (schema.cantilever_of(mode) is not None)
+    assert "sum" not in describe_section("surface.parts", None, "force-distance").choices
 
 
 def test_every_example_that_a_field_shows_is_read_by_its_type():
     for mode, table, choice in EVERY:
-        shape = section(table, choice or None, mode)
+        shape = describe_section(table, choice or None, mode)
         for field in shape.fields.values():
             if not field.example or field.kind == "tables":
                 continue
@@ -72,11 +80,11 @@ def test_every_example_that_a_field_shows_is_read_by_its_type():
                 path = f"surface.parts[0].{field.name}"
             place = path.rpartition(".")[0]
             if shape.chooser:
-                document = with_value(document, f"{place}.{shape.chooser}", choice)
+                document = replace_value(document, f"{place}.{shape.chooser}", choice)
             value = (
                 field.example == "True" if field.kind == "flag" else read_text(field.example, field)
             )
-            found = problems(with_value(document, path, value), HERE)
+            found = find_problems(replace_value(document, path, value), HERE)
             reason = found.get(path, "")
             assert "unit" not in reason, (path, field.example, reason)
             assert "plain number" not in reason, (path, field.example, reason)
@@ -85,7 +93,7 @@ def test_every_example_that_a_field_shows_is_read_by_its_type():
 def test_a_key_may_mean_different_things_in_different_ways():
     (entry,) = (
         entry
-        for entry in section("sample", "maxwell", "tapping-cycle").entries
+        for entry in describe_section("sample", "maxwell", "tapping-cycle").entries
         if isinstance(entry, Alternatives)
     )
     assert entry.names == (("E0", "relaxation_time"), ("E0", "viscosity"), ("G0", "viscosity"))
@@ -107,27 +115,29 @@ def test_a_key_may_mean_different_things_in_different_ways():
     ],
 )
 def test_defaults_are_those_of_what_is_built(table, choice, name, default):
-    assert section(table, choice, "force-distance").fields[name].default == default
+    assert describe_section(table, choice, "force-distance").fields[name].default == default
 
 
 def test_presets_are_the_bundled_examples_and_can_run():
-    assert list(presets()) == example_names()
-    assert preset_titles()["ldpe-tapping"].startswith("One tap of a 10 nm tip")
-    for document in presets().values():
-        found = outlook(document, HERE)
+    assert list(read_presets()) == example_names()
+    assert read_preset_titles()["ldpe-tapping"].startswith("One tap of a 10 nm tip")
+    for document in read_presets().values():
+        found = foresee(document, HERE)
         assert found.problems == {}
         assert found.seconds > 0
-        assert ordered(document) == document
+        assert arrange(document) == document
 
 
 def test_outlook_is_the_regime_and_cost_of_the_program():
     experiment = experiment_from(TAP, HERE)
     table = regime(experiment)
-    assert [row.name for row in summary(TAP, HERE)] == list(table.columns[0].cells)
-    assert [row.value for row in summary(TAP, HERE)] == list(table.columns[1].cells)
-    assert cost(TAP, HERE) == expected_seconds(experiment)
-    assert cost(presets()["ps-approach-curve"], HERE) > 10 * cost(TAP, HERE)
-    assert cost({**TAP, "run": {"check": True}}, HERE) == pytest.approx(4 * cost(TAP, HERE))
+    assert [row.name for row in summarise(TAP, HERE)] == list(table.columns[0].cells)
+    assert [row.value for row in summarise(TAP, HERE)] == list(table.columns[1].cells)
+    assert estimate_cost(TAP, HERE) == expected_seconds(experiment)
+    assert estimate_cost(read_presets()["ps-approach-curve"], HERE) > 10 * estimate_cost(TAP, HERE)
+    assert estimate_cost({**TAP, "run": {"check": True}}, HERE) == pytest.approx(
+        4 * estimate_cost(TAP, HERE)
+    )
 
 
 @pytest.mark.parametrize(
@@ -160,30 +170,30 @@ def test_problems_name_the_field_and_the_reason(path, value, place, reason):
     document = {k: v for k, v in document.items() if v is not None}
     if key and value is None:
         del document[table][key]
-    found = problems(document, HERE)
+    found = find_problems(document, HERE)
     assert reason in found[place]
-    assert summary(document, HERE) == ()
-    assert cost(document, HERE) is None
+    assert summarise(document, HERE) == ()
+    assert estimate_cost(document, HERE) is None
     if path == place and value is not None:
-        assert without(document, place) == without(TAP, place)
+        assert remove(document, place) == remove(TAP, place)
 
 
 @pytest.mark.parametrize("name", ["../secret.csv", "/etc/passwd", "..", "a\\b.csv", "C:x.csv"])
 def test_a_file_from_the_browser_has_a_plain_name(tmp_path, name):
     document = {**TAP, "tip": {"shape": "measured", "file": name}}
-    (place,) = problems(document, tmp_path / "session")
+    (place,) = find_problems(document, tmp_path / "session")
     assert place == "tip.file"
     parts = [{"law": "tabulated", "file": name}]
-    (place,) = problems({**TAP, "surface": {"law": "sum", "parts": parts}}, tmp_path)
+    (place,) = find_problems({**TAP, "surface": {"law": "sum", "parts": parts}}, tmp_path)
     assert place == "surface.parts[0].file"
 
 
 def test_files_are_found_in_the_folder_of_the_session(tmp_path):
     document = {**TAP, "tip": {"shape": "measured", "file": "tip.csv"}}
-    assert "no such file" in problems(document, tmp_path)["tip.file"]
+    assert "no such file" in find_problems(document, tmp_path)["tip.file"]
     heights = "\n".join(f"{r},{r * r / 20}" for r in range(0, 30, 3))
     (tmp_path / "tip.csv").write_text(f"radius (nm),height (nm)\n{heights}\n", encoding="utf-8")
-    assert problems(document, tmp_path) == {}
+    assert find_problems(document, tmp_path) == {}
 
 
 def test_uploads_get_plain_names_that_are_not_taken(tmp_path):
@@ -225,22 +235,22 @@ def test_texts_stand_for_values(field, text, value):
     found = read_text(text, field)
     assert found == value
     assert type(found) is type(value)
-    assert read_text(written_text(found), field) == (None if value == [] else value)
+    assert read_text(write_text(found), field) == (None if value == [] else value)
 
 
 @given(st.floats(allow_nan=False, allow_infinity=False) | st.integers())
 def test_numbers_survive_their_text(number):
-    found = read_text(written_text(number), NUMBER)
+    found = read_text(write_text(number), NUMBER)
     assert math.isclose(found, number, rel_tol=0, abs_tol=0)
 
 
 def test_documents_are_changed_in_copies():
-    changed = with_value(TAP, "solver.nodes", 50)
-    assert value_at(changed, "solver.nodes") == 50
+    changed = replace_value(TAP, "solver.nodes", 50)
+    assert find_value(changed, "solver.nodes") == 50
     assert "solver" not in TAP
-    assert with_value({"tip": 5}, "tip.radius", "1 nm") == {"tip": {"radius": "1 nm"}}
-    assert value_at(TAP, "tip.radius.deeper") is None
-    assert value_at({"a": [1]}, "a[3]") is None
+    assert replace_value({"tip": 5}, "tip.radius", "1 nm") == {"tip": {"radius": "1 nm"}}
+    assert find_value(TAP, "tip.radius.deeper") is None
+    assert find_value({"a": [1]}, "a[3]") is None
 
 
 def test_documents_are_minimal_and_in_the_order_of_the_form():
@@ -251,87 +261,87 @@ def test_documents_are_minimal_and_in_the_order_of_the_form():
         "tip": {"radius": "1 nm", "shape": "sphere"},
     }
     mixed |= {"mode": "force-distance"}
-    found = ordered(mixed)
+    found = arrange(mixed)
     assert list(found) == ["mode", "tip", "solver", "odd"]
     assert list(found["tip"]) == ["shape", "radius"]
     assert found["solver"] == {"name": "energy", "nodes": 50}
-    assert "solver" not in ordered({**TAP, "solver": {"name": "energy"}})
+    assert "solver" not in arrange({**TAP, "solver": {"name": "energy"}})
 
 
 def test_another_choice_keeps_what_both_have_and_remembers_the_rest():
     memory = {}
-    cone = chosen(TAP, shown_of(TAP, "tip"), "cone", memory)
+    cone = choose(TAP, shown_of(TAP, "tip"), "cone", memory)
     assert cone["tip"] == {"shape": "cone"}
-    assert chosen(cone, shown_of(cone, "tip"), "hyperboloid", memory)["tip"] == {
+    assert choose(cone, shown_of(cone, "tip"), "hyperboloid", memory)["tip"] == {
         "shape": "hyperboloid",
         "radius": "10 nm",
     }
-    maxwell = chosen(TAP, shown_of(TAP, "sample"), "maxwell", memory)
+    maxwell = choose(TAP, shown_of(TAP, "sample"), "maxwell", memory)
     assert maxwell["sample"] == {"model": "maxwell", "E0": "2 GPa", "poisson": 0.49}
-    back = chosen(maxwell, shown_of(maxwell, "sample"), "standard-linear-solid", memory)
+    back = choose(maxwell, shown_of(maxwell, "sample"), "standard-linear-solid", memory)
     assert back == TAP
     with pytest.raises(KeyError):
-        chosen(TAP, shown_of(TAP, "tip"), "__class__", memory)
+        choose(TAP, shown_of(TAP, "tip"), "__class__", memory)
 
 
 def test_alternatives_are_taken_one_at_a_time():
     memory = {}
     one = shown_of(TAP, "sample")
     moduli, times = one.ways
-    shear = taken(TAP, "sample", moduli, 1, memory)
+    shear = take_way(TAP, "sample", moduli, 1, memory)
     assert "E0" not in shear["sample"]
     assert "creep_time" in shear["sample"]
-    assert set(shown_sections(shear, {("sample", 0): 1})[1].fields) >= {"G0", "G_inf"}
-    assert taken(shear, "sample", moduli, 0, memory) == TAP
-    assert "creep_time" not in taken(TAP, "sample", times, 1, memory)["sample"]
+    assert set(list_sections(shear, {("sample", 0): 1})[1].fields) >= {"G0", "G_inf"}
+    assert take_way(shear, "sample", moduli, 0, memory) == TAP
+    assert "creep_time" not in take_way(TAP, "sample", times, 1, memory)["sample"]
 
 
 def test_keys_of_two_alternatives_are_both_on_the_page():
     both = {**TAP, "surface": {**TAP["surface"], "work_of_adhesion": "30 mJ/m^2"}}
     one = shown_of(both, "surface")
     assert {"surface.hamaker", "surface.work_of_adhesion", "surface.z0"} == set(one.inputs)
-    assert "give hamaker, or work_of_adhesion" in problems(both, HERE)["surface"]
+    assert "give hamaker, or work_of_adhesion" in find_problems(both, HERE)["surface"]
 
 
 def test_another_mode_takes_its_own_motion_and_lever():
     memory = {}
-    curve = moded(TAP, "force-spectroscopy", memory)
+    curve = change_mode(TAP, "force-spectroscopy", memory)
     assert curve["motion"] == {
         "mean_height": "42.82 nm",
         "amplitude": "49.6 nm",
         "frequency": "278 kHz",
     }
-    lever = with_value(curve, "cantilever.stiffness", "28 N/m")
-    assert problems(lever, HERE) == {}
-    tap = moded(lever, "tapping-cycle", memory)
+    lever = replace_value(curve, "cantilever.stiffness", "28 N/m")
+    assert find_problems(lever, HERE) == {}
+    tap = change_mode(lever, "tapping-cycle", memory)
     assert tap == TAP
-    assert moded(tap, "approach-curve", memory)["cantilever"] == {"stiffness": "28 N/m"}
+    assert change_mode(tap, "approach-curve", memory)["cantilever"] == {"stiffness": "28 N/m"}
 
 
 def test_a_sum_begins_with_the_law_that_was_there():
     memory = {}
-    total = chosen(TAP, shown_of(TAP, "surface"), "sum", memory)
+    total = choose(TAP, shown_of(TAP, "surface"), "sum", memory)
     assert total["surface"] == {"law": "sum", "parts": [TAP["surface"]]}
-    assert problems(total, HERE) == {}
-    more = added(total)
-    assert [one.path for one in shown_sections(more, {}) if "parts" in one.path] == [
+    assert find_problems(total, HERE) == {}
+    more = add_part(total)
+    assert [one.path for one in list_sections(more, {}) if "parts" in one.path] == [
         "surface.parts[0]",
         "surface.parts[1]",
     ]
-    part = chosen(more, shown_of(more, "surface.parts[1]"), "repulsion", memory)
+    part = choose(more, shown_of(more, "surface.parts[1]"), "repulsion", memory)
     assert part["surface"]["parts"][1] == {"law": "repulsion"}
-    assert chosen(part, shown_of(part, "surface"), "lennard-jones", memory) == TAP
+    assert choose(part, shown_of(part, "surface"), "lennard-jones", memory) == TAP
     for _ in range(50):
-        more = added(more)
+        more = add_part(more)
     assert len(more["surface"]["parts"]) == 20
 
 
 def test_empty_fields_of_the_way_taken_are_missing():
     document = sample(model="kelvin-voigt", poisson=0.3)
-    shown = shown_sections(document, {("sample", 0): 2})
-    found = with_missing(problems(document, HERE), shown, document)
+    shown = list_sections(document, {("sample", 0): 2})
+    found = add_missing(find_problems(document, HERE), shown, document)
     assert found == {"sample.G": MISSING, "sample.viscosity": MISSING}
-    assert with_missing({}, shown_sections(TAP, {}), TAP) == {}
+    assert add_missing({}, list_sections(TAP, {}), TAP) == {}
 
 
 def test_problems_have_a_place_on_the_form():
@@ -344,7 +354,7 @@ def test_problems_have_a_place_on_the_form():
         poison=0.3,
     )
     document["tip"] = {"shape": "con"}
-    at, elsewhere = placed(problems(document, HERE), shown_sections(document, {}))
+    at, elsewhere = place(find_problems(document, HERE), list_sections(document, {}))
     assert at["sample.moduli"].startswith("entry 2 must be a modulus")
     assert "did you mean 'cone'" in at["tip"]
     assert [path for path, _ in elsewhere] == ["sample.poison"]
@@ -366,9 +376,9 @@ keys = st.sampled_from(
 @given(st.dictionaries(keys, values), st.sampled_from([*MODES, "odd"]))
 def test_any_document_has_a_form(broken, mode):
     document = {**TAP, "mode": mode, **broken}
-    shown = shown_sections(document, {})
-    found = with_missing(problems(document, HERE), shown, document)
-    at, elsewhere = placed(found, shown)
+    shown = list_sections(document, {})
+    found = add_missing(find_problems(document, HERE), shown, document)
+    at, elsewhere = place(found, shown)
     assert bool(found) == bool(at or elsewhere)
-    assert plan_of(shown, 10)["sections"]
-    assert ordered(ordered(document)) == ordered(document) or "nan" in repr(document)
+    assert make_plan(shown, 10)["sections"]
+    assert arrange(arrange(document)) == arrange(document) or "nan" in repr(document)

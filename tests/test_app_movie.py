@@ -13,9 +13,9 @@ from bokeh.models import ColumnDataSource, CustomJS, Slider
 from bokeh.resources import INLINE
 
 from softafm.app.colours import PALETTES, recolour
-from softafm.app.movie import FRAMES, movie
-from softafm.app.movie_data import movie_of
-from softafm.draw.scenes import scenes_at, view_of, window
+from softafm.app.movie import FRAMES, make_player
+from softafm.app.movie_data import make_movie
+from softafm.draw.scenes import choose_view, choose_window, interpolate_scenes
 from softafm.experiment import config
 
 
@@ -27,7 +27,7 @@ def tap():
 
 @pytest.fixture
 def player(tap):
-    return movie(tap, "light")
+    return make_player(tap, "light")
 
 
 def arguments(layout):
@@ -36,13 +36,16 @@ def arguments(layout):
 
 
 def test_a_result_without_shapes_has_no_movie(tap):
-    assert movie(tap.drop_vars(["deformation", "gap", "pressure"]), "light") is None
+    assert make_player(tap.drop_vars(["deformation", "gap", "pressure"]), "light") is None
 
 
 def test_outlines_are_the_shapes_to_a_fraction_of_a_pixel(tap):
-    shown = movie_of(tap, 40)
-    start, stop = window(tap)
-    scenes, view = scenes_at(tap, np.linspace(start, stop, 40)), view_of(tap, start, stop, 2.4)
+    shown = make_movie(tap, 40)
+    start, stop = choose_window(tap)
+    scenes, view = (
+        interpolate_scenes(tap, np.linspace(start, stop, 40)),
+        choose_view(tap, start, stop, 2.4),
+    )
     inside = np.abs(shown.x[:-2]) <= 1e9 * view.half_width
     for index in (0, 17, 39):
         for whole, half, edge in (
@@ -58,7 +61,7 @@ def test_outlines_are_the_shapes_to_a_fraction_of_a_pixel(tap):
 
 
 def test_outlines_close_beyond_the_view(tap):
-    shown = movie_of(tap, 5)
+    shown = make_movie(tap, 5)
     height = shown.view["top"] - shown.view["bottom"]
     assert shown.ends[0] < shown.view["bottom"] - height
     assert shown.ends[1] > shown.view["top"] + height
@@ -66,7 +69,7 @@ def test_outlines_close_beyond_the_view(tap):
 
 
 def test_the_marker_is_on_the_force_curve(tap):
-    shown = movie_of(tap, 300)
+    shown = make_movie(tap, 300)
     height, force = (
         np.interp(shown.frames["time"], shown.curve["time"], shown.curve[name])
         for name in ("height", "force")
@@ -96,7 +99,7 @@ def test_the_slider_reads_as_time(player, tap):
     (slider,) = player.select({"type": Slider})
     moments = slider.format.args["moments"]
     assert len(moments) == slider.end + 1 == FRAMES
-    assert float(moments[0].split()[0]) == pytest.approx(1e6 * window(tap)[0], abs=1e-3)
+    assert float(moments[0].split()[0]) == pytest.approx(1e6 * choose_window(tap)[0], abs=1e-3)
     assert moments[0].endswith(" µs")
 
 
@@ -147,7 +150,7 @@ def test_the_movie_plays_pauses_and_can_be_moved(page, player, tap):
     page.locator(".noUi-handle").focus()
     page.keyboard.press("End")
     page.wait_for_function(f"window.softafm_movie_frames > {stopped}")
-    shown = movie_of(tap, FRAMES)
+    shown = make_movie(tap, FRAMES)
     now, past = columns(page, "now", args), columns(page, "past", args)
     for name, values in shown.frames.items():
         assert now[name] == [pytest.approx(values[-1], rel=1e-9)]

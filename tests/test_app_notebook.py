@@ -73,10 +73,10 @@ def test_a_run_from_python_gives_its_result_by_label(page):
 def test_pages_share_the_processes_of_their_limits(page):
     from softafm.app import Page
     from softafm.app.limits import Limits
-    from softafm.app.notebook import shared_runner
+    from softafm.app.notebook import share_runner
 
     other = Page()
-    assert other.session._runner is page.session._runner is shared_runner(Limits())
+    assert other.session._runner is page.session._runner is share_runner(Limits())
     other.close()
 
 

@@ -8,15 +8,15 @@ import pytest
 
 pytest.importorskip("panel", reason="the page is not installed: pip install softafm[app]")
 
-from softafm.app.form import presets
+from softafm.app.form import read_presets
 from softafm.app.limits import Limits
 from softafm.app.page import Page
 from softafm.app.runs import Runner
-from softafm.app.take_away import netcdf_bytes, toml_text
+from softafm.app.take_away import write_netcdf, write_toml
 from softafm.experiment.config import experiment_from
 
-TAP = presets()["ldpe-tapping"]
-CURVE = presets()["ps-approach-curve"]
+TAP = read_presets()["ldpe-tapping"]
+CURVE = read_presets()["ps-approach-curve"]
 
 
 @pytest.fixture(scope="module")
@@ -79,9 +79,9 @@ def test_what_cannot_run_is_not_run(page):
 
 
 def test_files_are_opened(page, tap):
-    open_file(page, "curve.toml", toml_text(CURVE).encode())
+    open_file(page, "curve.toml", write_toml(CURVE).encode())
     assert page.form.document == CURVE
-    open_file(page, "tap.NC", netcdf_bytes(tap))
+    open_file(page, "tap.NC", write_netcdf(tap))
     assert list(page.results) == ["1 tap"]
     assert page._tabs._names[1:] == ["Force–distance", "Time", "Numbers", "Take away"]
     page.answer({"end": page.session.entries[0].id})
@@ -109,7 +109,7 @@ def test_files_that_are_no_good_are_refused(page, name, content, reason):
 
 
 def test_a_result_that_cannot_be_drawn_is_refused(page, tap):
-    open_file(page, "a.nc", netcdf_bytes(tap.drop_vars("tip_height")))
+    open_file(page, "a.nc", write_netcdf(tap.drop_vars("tip_height")))
     assert words(page)[0].startswith("a.nc: variable 'tip_height' is missing")
     assert page.session.entries == []
 

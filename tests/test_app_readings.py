@@ -16,18 +16,18 @@ pytest.importorskip("panel", reason="the page is not installed: pip install soft
 import panel as pn
 
 from softafm.app import readings
-from softafm.app.form import presets
+from softafm.app.form import read_presets
 from softafm.app.limits import Limits
 from softafm.app.page import Page
 from softafm.app.readings import MeasuredFiles, Reading, try_out
 from softafm.app.runs import Runner
-from softafm.app.take_away import netcdf_bytes, toml_text
+from softafm.app.take_away import write_netcdf, write_toml
 from softafm.experiment.config import experiment_from
 from softafm.files.guard import Unreadable, read_apart
 from softafm.files.measured import read_trajectory
 from softafm.tips import read_tip_profile
 
-TAP = presets()["ldpe-tapping"]
+TAP = read_presets()["ldpe-tapping"]
 TIP = "radius (nm),height (nm)\n" + "".join(f"{r},{r * r / 20}\n" for r in range(30))
 
 
@@ -102,7 +102,7 @@ def test_other_visitors_are_served_while_a_file_is_read(stuck):
             def upload():
                 stuck_one.form.choose("tip", "measured")
                 stuck_one.form.upload("tip.file", "tip.csv", TIP.encode())
-                stuck_one.answer(sent("other.toml", toml_text(TAP).encode()))
+                stuck_one.answer(sent("other.toml", write_toml(TAP).encode()))
                 done.set()
 
             started = time.monotonic()
@@ -154,7 +154,7 @@ def test_a_reading_that_fails_is_told_on_the_page(page, monkeypatch):
 
 def test_an_experiment_from_a_file_fills_the_form(page):
     document = {**TAP, "motion": {**TAP["motion"], "cycles": 3}}
-    page.answer(sent("tap.toml", toml_text(document).encode()))
+    page.answer(sent("tap.toml", write_toml(document).encode()))
     until(lambda: page._file[1].over)
     page.answer({})
     assert page.form.document == document
@@ -272,7 +272,7 @@ def test_moduli_of_a_long_record_are_tried_as_the_form_uses_them(tmp_path):
 
 def test_an_uploaded_result_is_drawn_and_comes_back_whole(page):
     tap = experiment_from(TAP, Path()).run()
-    page.answer(sent("tap.nc", netcdf_bytes(tap)))
+    page.answer(sent("tap.nc", write_netcdf(tap)))
     until(lambda: page._file[1].over)
     page.answer({})
     (found,) = page.results.values()

@@ -6,20 +6,20 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from softafm.app.form import presets
+from softafm.app.form import read_presets
 from softafm.app.limits import Limits
 from softafm.app.process import Process
-from softafm.app.rows import about, row_of
+from softafm.app.rows import describe_time, make_row
 from softafm.app.runs import Runner
 from softafm.app.session import Session
-from softafm.app.tables import lines_html, numbers_html, regime_table
-from softafm.app.take_away import netcdf_bytes
+from softafm.app.tables import make_regime_table, write_lines, write_numbers
+from softafm.app.take_away import write_netcdf
 from softafm.app.worker import refuse_large
-from softafm.draw.summary import observables
+from softafm.draw.summary import list_observables
 from softafm.experiment.config import experiment_from
 from softafm.experiment.regime import Row
 
-TAP = presets()["ldpe-tapping"]
+TAP = read_presets()["ldpe-tapping"]
 
 
 @pytest.fixture(scope="module")
@@ -59,7 +59,7 @@ def test_runs_are_listed_named_and_coloured_and_can_be_removed(session):
     session.rename(first.id, " ")
     assert first.label.startswith("soft one x")
     session.cancel(second.id)
-    assert (second.state, row_of(second)["words"]) == ("cancelled", "cancelled")
+    assert (second.state, make_row(second)["words"]) == ("cancelled", "cancelled")
     session.remove(first.id)
     assert session.entries == [second]
     assert first.state == "cancelled"
@@ -78,16 +78,16 @@ def test_what_is_too_much_is_refused(session, idle, tmp_path, tap):
     session.run(TAP, "tap", None)
     with pytest.raises(ValueError, match="2 of your runs are waiting already"):
         session.run(TAP, "tap", None)
-    uploaded(session, "tap.nc", netcdf_bytes(tap))
+    uploaded(session, "tap.nc", write_netcdf(tap))
     for more in (lambda: session.run(TAP, "tap", None), lambda: session.read("a.nc", b"")):
         with pytest.raises(ValueError, match="3 runs are listed, as many as may be"):
             more()
     other = Session(idle, tmp_path, Limits())
-    assert row_of(other.run(TAP, "tap", None))["words"] == "waiting, number 2 in the queue"
+    assert make_row(other.run(TAP, "tap", None))["words"] == "waiting, number 2 in the queue"
 
 
 def test_results_of_a_user_take_a_bounded_memory(idle, tmp_path, tap):
-    content = netcdf_bytes(tap)
+    content = write_netcdf(tap)
     small = Session(idle, tmp_path, Limits(kept_bytes=tap.nbytes + 1))
     uploaded(small, "tap.nc", content)
     uploaded(small, "tap.nc", content)
@@ -125,14 +125,14 @@ def test_a_process_has_bounded_memory():
 
 def test_an_upload_is_the_result_and_shows_what_is_doubtful(session, tap):
     doubtful = tap.assign_attrs(warnings="too <b>coarse</b>")
-    entry = uploaded(session, "soft tap.nc", netcdf_bytes(doubtful))
+    entry = uploaded(session, "soft tap.nc", write_netcdf(doubtful))
     assert (entry.label, entry.state, entry.over) == ("1 soft tap", "done", True)
     assert entry.warnings == ("too <b>coarse</b>",)
     xr.testing.assert_identical(entry.result, doubtful)
     for name, content, words in (
         ("a.nc", b"odd", "a.nc: not a NetCDF file that softafm wrote"),
-        ("a.nc", netcdf_bytes(tap)[:3000], "a.nc: not a readable NetCDF file"),
-        ("a.nc", netcdf_bytes(tap.assign_attrs(format="x")), "a.nc: not a result of softafm"),
+        ("a.nc", write_netcdf(tap)[:3000], "a.nc: not a readable NetCDF file"),
+        ("a.nc", write_netcdf(tap.assign_attrs(format="x")), "a.nc: not a result of softafm"),
         ("a.nc", bytes(1_000_001), "the file has 1.0 MB: at most 1 MB"),
     ):
         with pytest.raises(ValueError, match=words.replace("(", r"\(")):
@@ -141,11 +141,11 @@ def test_an_upload_is_the_result_and_shows_what_is_doubtful(session, tap):
 
 def test_what_comes_from_users_is_escaped(tap):
     bad = "<img src=x onerror=alert(1)>"
-    for text in (numbers_html(bad, observables(tap), [bad]), lines_html({bad: bad})):
+    for text in (write_numbers(bad, list_observables(tap), [bad]), write_lines({bad: bad})):
         assert "<img" not in text
         assert "&lt;img" in text
-    assert regime_table([Row("a", "b", "c")], {})["rows"] == [["a", "b", "c"]]
-    refused = regime_table((), {"tip": bad})
+    assert make_regime_table([Row("a", "b", "c")], {})["rows"] == [["a", "b", "c"]]
+    refused = make_regime_table((), {"tip": bad})
     assert (refused["rows"], refused["bad"]) == ([("tip", bad)], True)
 
 
@@ -154,7 +154,7 @@ def test_what_comes_from_users_is_escaped(tap):
     [(0.0187, "19 ms"), (1.4, "1 s"), (59, "59 s"), (150, "2 min"), (7200, "2.0 h")],
 )
 def test_times_are_said_as_people_say_them(seconds, words):
-    assert about(seconds) == words
+    assert describe_time(seconds) == words
 
 
 @pytest.mark.parametrize(

@@ -202,36 +202,36 @@ def test_a_file_name_in_python_lines_is_text_and_nothing_else(folder):
 @pytest.mark.parametrize("name", ["ldpe-tapping", "ldpe-spectroscopy", "files", "a sum"])
 def test_the_command_line_reproduces_the_run(name, folder, capsys):
     document = DOCUMENTS[name]
-    Path(take_away.file_name(document)).write_text(take_away.toml_text(document))
-    program, *arguments = shlex.split(take_away.command_line(document))
+    Path(take_away.name_file(document)).write_text(take_away.write_toml(document))
+    program, *arguments = shlex.split(take_away.write_command(document))
     assert program == "softafm"
     assert main(arguments) == 0
     capsys.readouterr()
-    result = Path(take_away.file_name(document)).with_suffix(".nc")
+    result = Path(take_away.name_file(document)).with_suffix(".nc")
     assert_same(sa.load(result), run(document, folder))
 
 
 @pytest.mark.parametrize("name", DOCUMENTS)
 def test_the_experiment_file_holds_the_document(name):
-    text = take_away.toml_text(DOCUMENTS[name])
+    text = take_away.write_toml(DOCUMENTS[name])
     assert config.document_from(text, name) == DOCUMENTS[name]
 
 
 @pytest.mark.parametrize("mode", ["../../etc/passwd", "a b; rm -rf", None, ["x"]])
 def test_a_file_is_not_named_as_a_link_says(mode):
-    assert take_away.file_name({"mode": mode}) == "experiment.toml"
-    assert take_away.command_line({"mode": mode}) == "softafm run experiment.toml"
+    assert take_away.name_file({"mode": mode}) == "experiment.toml"
+    assert take_away.write_command({"mode": mode}) == "softafm run experiment.toml"
 
 
 @pytest.mark.parametrize("name", DOCUMENTS)
 def test_a_link_holds_the_document(name):
-    query = take_away.to_query(DOCUMENTS[name])
-    assert take_away.from_query(query) == DOCUMENTS[name]
-    assert take_away.from_query(f"?{query}") == DOCUMENTS[name]
+    query = take_away.write_query(DOCUMENTS[name])
+    assert take_away.read_query(query) == DOCUMENTS[name]
+    assert take_away.read_query(f"?{query}") == DOCUMENTS[name]
 
 
 def test_a_link_can_be_read():
-    query = take_away.to_query(DOCUMENTS["ldpe-tapping"])
+    query = take_away.write_query(DOCUMENTS["ldpe-tapping"])
     assert query.startswith("mode=tapping-cycle&tip.shape=paraboloid&tip.radius=10+nm&")
     assert "sample.poisson=0.49" in query
     assert "run.profiles=false" in query
@@ -253,7 +253,7 @@ VALUES = st.recursive(
 
 @given(st.dictionaries(KEYS, st.dictionaries(st.text(max_size=4), VALUES, max_size=4), max_size=4))
 def test_a_link_holds_any_document(document):
-    found = take_away.from_query(take_away.to_query(document))
+    found = take_away.read_query(take_away.write_query(document))
     assert found == document
     assert repr(found) == repr(document)  # 1 is no 1.0, nor True
 
@@ -272,29 +272,29 @@ def test_a_link_holds_any_document(document):
 )
 def test_a_malformed_link_is_refused_in_one_line(query, reason):
     with pytest.raises(ConfigError, match=reason) as refusal:
-        take_away.from_query(query)
+        take_away.read_query(query)
     assert len(str(refusal.value).splitlines()) == 1
 
 
 def test_a_document_too_long_for_a_link_is_refused():
     ratios = np.linspace(0.9, 0.1, 1000).tolist()
     with pytest.raises(ConfigError, match="use the TOML file"):
-        take_away.to_query({"mode": "approach-curve", "motion": {"amplitude_ratio": ratios}})
+        take_away.write_query({"mode": "approach-curve", "motion": {"amplitude_ratio": ratios}})
 
 
 def test_files_of_a_result_can_be_read_back(folder):
     result = run(DOCUMENTS["ldpe-tapping"], folder)
-    Path("a.nc").write_bytes(take_away.netcdf_bytes(result))
+    Path("a.nc").write_bytes(take_away.write_netcdf(result))
     assert sa.load("a.nc").identical(result)
-    rows = [line for line in take_away.csv_bytes(result).decode().splitlines() if line[0] != "#"]
+    rows = [line for line in take_away.write_csv(result).decode().splitlines() if line[0] != "#"]
     names, table = rows[0].split(","), np.loadtxt(rows[1:], delimiter=",")
     np.testing.assert_allclose(table[:, names.index("force (N)")], result.force, rtol=1e-8)
 
 
 def test_pictures_are_of_their_kind_and_name_the_runs(folder):
     result = run(DOCUMENTS["ldpe-tapping"], folder)
-    assert take_away.picture([result], "png").startswith(b"\x89PNG\r\n")
-    drawing = take_away.picture([result, result], "svg", ["first", "second"])
+    assert take_away.draw_picture([result], "png").startswith(b"\x89PNG\r\n")
+    drawing = take_away.draw_picture([result, result], "svg", ["first", "second"])
     assert b"<svg" in drawing
     assert b"second" in drawing
 
@@ -302,7 +302,7 @@ def test_pictures_are_of_their_kind_and_name_the_runs(folder):
 def test_a_picture_of_different_modes_is_refused(folder):
     results = [run(DOCUMENTS[name], folder) for name in ("ldpe-tapping", "a sum")]
     with pytest.raises(ValueError, match="the same for all"):
-        take_away.picture(results, "png")
+        take_away.draw_picture(results, "png")
 
 
 def test_what_is_taken_away_needs_no_panel():

@@ -8,11 +8,11 @@ import pytest
 
 pn = pytest.importorskip("panel", reason="the page is not installed: pip install softafm[app]")
 
-from softafm.app.form import presets  # noqa: E402
+from softafm.app.form import read_presets  # noqa: E402
 from softafm.app.marks import MISSING  # noqa: E402
 from softafm.app.widgets import Form  # noqa: E402
 
-TAP = presets()["ldpe-tapping"]
+TAP = read_presets()["ldpe-tapping"]
 TIP = "radius (nm),height (nm)\n" + "\n".join(f"{r},{r * r / 20}" for r in range(0, 30, 3)) + "\n"
 
 
@@ -77,7 +77,7 @@ def test_values_at_their_defaults_are_not_written(form):
 
 
 def test_a_document_fills_all_fields(form):
-    for name, document in presets().items():
+    for name, document in read_presets().items():
         form.use_preset(name)
         assert form.document == document
         assert form._fields.state["preset"] == name
@@ -290,7 +290,7 @@ def test_choosing_in_the_browser(opened):
     page.wait_for_selector(".field-cantilever-stiffness")
     assert page.locator(".field-tip-radius input").input_value() == "5 um"
     assert page.locator(".field.bad").count() == 0
-    wait_until(lambda: form.document == presets()["pdms-sphere"])
+    wait_until(lambda: form.document == read_presets()["pdms-sphere"])
 
 
 def test_a_sum_a_flag_and_a_file_in_the_browser(opened, tmp_path):

@@ -9,17 +9,19 @@ import pytest
 import softafm as sa
 from softafm.checks.refusals import ConfigError
 from softafm.experiment.config import document_from, example_text, experiment_from
+from softafm.modes import MODES
 from softafm.sweeps.block import DONE, FAILED, WARNED, Work
-from softafm.sweeps.campaign import OBSERVABLES
-from softafm.sweeps.reading import campaign_of, table_of
-from softafm.sweeps.sweep import planned
+from softafm.sweeps.reading import make_campaign, read_table
+from softafm.sweeps.sweep import plan
 
 TAP = document_from(example_text("ldpe-tapping"), "ldpe-tapping")
 EXAMPLES = ("attard-triangle", "ldpe-spectroscopy", "ldpe-tapping")
 
 
 def campaign(sweep, document=TAP, what=None):
-    return campaign_of(document if what is None else what, Path(), table_of(sweep), from_file=True)
+    return make_campaign(
+        document if what is None else what, Path(), read_table(sweep), from_file=True
+    )
 
 
 def refused(sweep, document=TAP, what=None):
@@ -34,7 +36,7 @@ def test_the_observables_of_a_mode_are_the_scalars_of_its_runs(name):
     document = document_from(example_text(name), name)
     result = experiment_from(document, Path()).run()
     scalars = [n for n, v in result.data_vars.items() if v.ndim == 0]
-    assert sorted(OBSERVABLES[document["mode"]]) == sorted(scalars)
+    assert sorted(MODES[document["mode"]].observed) == sorted(scalars)
 
 
 def test_a_run_gives_what_the_experiment_gives_to_the_last_bit():
@@ -45,7 +47,7 @@ def test_a_run_gives_what_the_experiment_gives_to_the_last_bit():
     document["motion"]["mean_height"], document["sample"]["E_inf"] = "43 nm", "0.2 GPa"
     result = experiment_from(document, Path()).run()
     assert {name: float(value) for name, value in given.items()} == {
-        name: float(result[name]) for name in OBSERVABLES["tapping-cycle"]
+        name: float(result[name]) for name in MODES["tapping-cycle"].observed
     }
 
 
@@ -58,7 +60,7 @@ def test_an_approach_curve_gives_arrays_over_branch_and_ratio():
     assert phase.unit == "degree"
     assert found.coordinates["amplitude_ratio"][1].tolist() == [0.8, 0.5]
     told = refused({"vary": {"motion.amplitude_ratio": [[0.8], [0.5]]}}, document)
-    assert told.startswith("sweep.vary.'motion.amplitude_ratio': the results of an approach curve")
+    assert told.startswith("sweep.vary.'motion.amplitude_ratio': the results of every run lie over")
 
 
 def test_a_file_of_a_campaign_is_read(tmp_path):
@@ -69,7 +71,7 @@ def test_a_file_of_a_campaign_is_read(tmp_path):
         "motion.mean_height = { from = '38 nm', to = '58 nm', points = 3 }\n"
     )
     (tmp_path / "c.toml").write_text(text, encoding="utf-8")
-    found, batch = planned(tmp_path / "c.toml", ["sweep.observables=['dissipation']"])
+    found, batch = plan(tmp_path / "c.toml", ["sweep.observables=['dissipation']"])
     assert found.dimensions == ("E_inf", "radius", "amplitude_mean_height")
     assert (found.shape, batch) == ((1, 2, 3), 7)
     assert [observable.name for observable in found.observables] == ["dissipation"]
@@ -163,7 +165,7 @@ def test_the_scalars_of_a_dataset_keep_their_units():
     found = campaign({"vary": {"mean_height": [43e-9]}}, what=tap)
     units = {observable.name: observable.unit for observable in found.observables}
     assert units["virial"] == "J"
-    assert sorted(units) == sorted(OBSERVABLES["tapping-cycle"])
+    assert sorted(units) == sorted(MODES["tapping-cycle"].observed)
 
 
 @pytest.mark.parametrize(

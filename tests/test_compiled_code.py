@@ -154,7 +154,7 @@ def write_wheel(package: Path, version: str, folder: Path) -> Path:
     ids=["empty", "cut", "a byte short", "a bit flipped", "of another kind"],
 )
 def test_damaged_content_is_not_found(monkeypatch, tmp_path, damage):
-    monkeypatch.setattr(code_store, "folder", lambda: tmp_path)
+    monkeypatch.setattr(code_store, "find_folder", lambda: tmp_path)
     content = bytes(range(256)) * 10
     code_store.write("loop", content)
     assert code_store.read("loop") == content
@@ -219,11 +219,11 @@ def test_a_folder_of_another_user_is_never_used(monkeypatch, tmp_path):
 
 
 def found_now() -> Path | None:
-    code_store.folder.cache_clear()
+    code_store.find_folder.cache_clear()
     try:
-        return code_store.folder()
+        return code_store.find_folder()
     finally:
-        code_store.folder.cache_clear()
+        code_store.find_folder.cache_clear()
 
 
 def test_code_of_builds_that_nobody_uses_is_removed(monkeypatch, tmp_path):
@@ -268,7 +268,7 @@ def test_what_loops_are_made_of_stands_where_the_build_is_named_after():
     """Their functions, and whatever they import from other files of the package."""
     from softafm.compiled.functions import CompiledFunction
 
-    files = [path for path in code_store._sources() if path.name != "__init__.py"]
+    files = [path for path in code_store._list_sources() if path.name != "__init__.py"]
     found = 0
     for path in files:
         name = ".".join(path.relative_to(PACKAGE.parent).with_suffix("").parts)

@@ -33,7 +33,7 @@ from softafm.units.quantities import (
     VISCOSITY,
     VOLTAGE,
     read_quantity,
-    readable,
+    write_quantity,
 )
 
 TAP = {
@@ -785,7 +785,7 @@ def test_reading_a_length_scales_by_its_prefix(number, unit):
     ],
 )
 def test_readable_values(value, unit, text):
-    assert readable(value, unit) == text
+    assert write_quantity(value, unit) == text
 
 
 # What is refused

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from softafm.checks.refusals import ConfigError
 from softafm.experiment.config import document_from, example_text
 from softafm.experiment.fields import field_of, plain_field, replaced
-from softafm.sweeps.designs import Between, design_of
+from softafm.sweeps.designs import Between, make_design
 from softafm.units import quantities as units
 
 TAP = document_from(example_text("ldpe-tapping"), "ldpe-tapping")
@@ -23,7 +23,7 @@ def of_tap(path):
 
 
 def design(vary, kind="grid", samples=None, seed=0, field=of_tap, taken=()):
-    return design_of(kind, vary, field, samples, seed, taken)
+    return make_design(kind, vary, field, samples, seed, taken)
 
 
 # Grids
@@ -33,7 +33,7 @@ def test_a_grid_has_a_dimension_for_each_field_in_si():
     found = design({"sample.E_inf": ["0.05 GPa", 1e8], "motion.cycles": [1, 2, 3]})
     assert (found.dimensions, found.shape, found.size) == (("E_inf", "cycles"), (2, 3), 6)
     assert found.at((0, 2)) == {"sample.E_inf": 5e7, "motion.cycles": 3}
-    assert found.written_at((1, 0)) == {"sample.E_inf": "100000000.0 Pa", "motion.cycles": 1}
+    assert found.write_at((1, 0)) == {"sample.E_inf": "100000000.0 Pa", "motion.cycles": 1}
     dims, values, told = found.coordinates["E_inf"]
     assert (dims, values.tolist()) == (("E_inf",), [5e7, 1e8])
     assert told == {"units": "Pa", "long_name": "sample.E_inf"}

@@ -3,17 +3,25 @@
 import importlib.util
 import json
 import re
+import sys
 import tomllib
 from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
+import xarray as xr
+from own_modes import modes_restored
 
 import softafm as sa
 from softafm import rheology, surfaces, tips
+from softafm.app.python_lines import python_lines
+from softafm.draw.results import plot
+from softafm.draw.summary import observables
 from softafm.experiment import schema
-from softafm.experiment.config import example_text, load_experiment
+from softafm.experiment.config import example_text, experiment_from, load_experiment
+from softafm.experiment.regime import rows
+from softafm.sweeps.reading import campaign_of, table_of
 
 DOCS = Path(__file__).parents[1] / "docs"
 
@@ -34,7 +42,8 @@ def example_module(page, folder):
 
 @pytest.fixture(scope="module")
 def extending(tmp_path_factory):
-    return example_module("extending.md", tmp_path_factory.mktemp("extending"))
+    with modes_restored():
+        yield example_module("extending.md", tmp_path_factory.mktemp("extending"))
 
 
 RUN = sa.Triangle(start=10e-9, turn=-2e-9, speed=1e-3)
@@ -181,6 +190,115 @@ def test_the_motion_of_the_extending_page_bounces(extending):
     assert np.count_nonzero(np.diff(deep.astype(int)) == 1) == 4
 
 
+RELAXING = tomllib.loads(
+    re.search(
+        r"```toml\n(mode = .*?)```", (DOCS / "extending.md").read_text(encoding="utf-8"), re.S
+    )[1]
+)
+SOFT = {
+    "tip": {"shape": "paraboloid", "radius": "1 um"},
+    "sample": {"model": "standard-linear-solid", "E0": "2 MPa", "E_inf": "0.5 MPa",
+               "creep_time": "1 ms", "poisson": 0.5},
+    "surface": {"law": "repulsion", "pressure_at_zero": "10 GPa", "decay": "0.1 nm"},
+}  # fmt: skip
+
+
+@pytest.fixture
+def relaxing(extending):
+    """The file of the page, with the tables that it leaves out."""
+    return {**SOFT, **RELAXING}
+
+
+def test_the_mode_of_the_extending_page_meets_the_closed_form(extending):
+    """At a depth reached at once the force relaxes as E(t): E. H. Lee and J. R. M. Radok, J. Appl.
+    Mech. 27, 438 (1960)."""
+    sample = sa.StandardLinearSolid(E0=2e6, E_inf=0.5e6, creep_time=1e-3, poisson=0.5)
+    law = sa.Repulsion(pressure_at_zero=1e10, decay=0.1e-9)
+    contact = sa.Contact(sa.Paraboloid(1e-6), sample, law)
+    relaxation_time = 1e-3 * 0.5e6 / 2e6
+    for duration in (0.5 * relaxation_time, 8 * relaxation_time):
+        held = extending.stress_relaxation(contact, 5e-9, 100e-9, 0.1, duration)
+        left = float(held.force_held / held.force_on_arrival)
+        assert left == pytest.approx(0.25 + 0.75 * np.exp(-duration / relaxation_time), rel=0.01)
+    hertz = sa.indentation.force(contact.tip, 100e-9, 2e6 / (1 - 0.5**2))
+    assert float(held.force_on_arrival) == pytest.approx(hertz, rel=0.02)
+
+
+def test_the_mode_of_the_extending_page_runs_from_a_file(extending, relaxing, tmp_path):
+    path = tmp_path / "relaxation.toml"
+    path.write_text(
+        "\n".join(f"{key} = {_inline(value)}" for key, value in relaxing.items()), encoding="utf-8"
+    )
+    experiment = load_experiment(path, ["motion.duration=2 ms"])
+    result = experiment.run()
+    same = extending.stress_relaxation(experiment.contact, 5e-9, 2e-9, 1e-5, 2e-3)
+    xr.testing.assert_equal(result, same)
+    assert experiment.observables()["force_held"] == float(same.force_held)
+    assert [row.name for row in rows(experiment)][-1] == "expected cost"
+    checked = extending.stress_relaxation(experiment.contact, 5e-9, 2e-9, 1e-5, check=True)
+    assert set(json.loads(checked.attrs["check_differences"])) == {"force_on_arrival", "force_held"}
+
+
+def test_results_of_the_extending_page_are_saved_exported_and_drawn(extending, tmp_path):
+    result = extending.relaxation
+    assert result.force_held.attrs == {
+        "units": "N", "long_name": "force at the end of the hold"
+    }  # fmt: skip
+    sa.save(result, tmp_path / "relaxation.nc")
+    assert sa.load(tmp_path / "relaxation.nc").identical(result)
+    sa.save(result.drop_vars("force_held"), tmp_path / "spoiled.nc")
+    with pytest.raises(ValueError, match="'force_held' is missing, which a result of mode 'stress"):
+        sa.load(tmp_path / "spoiled.nc")
+    sa.export(result, tmp_path / "relaxation.csv")
+    assert "# force_held = " in (tmp_path / "relaxation.csv").read_text(encoding="utf-8")
+    force, radius = plot([result, result]).axes
+    assert force.get_ylabel() == "Force on the tip (nN)"
+    assert radius.get_ylabel() == "Contact radius (nm)"
+    assert force.lines[-2].get_ydata()[-1] == pytest.approx(1e9 * float(result.force_held))
+    assert "force_held" in observables(result).columns[0].cells
+
+
+def test_the_mode_of_the_extending_page_is_swept(extending, relaxing):
+    what = {"vary": {"motion.depth": ["1 nm", "3 nm"]}}
+    campaign = campaign_of(relaxing, Path(), table_of(what), from_file=True)
+    found = [campaign.run(point)["force_held"] for point in campaign.points([range(2)])]
+    assert campaign.observables[0].unit == "N"
+    assert found[1] > 2 * found[0] > 0
+
+
+def test_the_page_knows_the_mode_of_the_extending_page(extending, relaxing, monkeypatch):
+    pytest.importorskip("bokeh")
+    from softafm.app.curves import Shown, figures
+    from softafm.app.form import section
+
+    fields = section("motion", None, "stress-relaxation").fields
+    assert list(fields) == ["start", "depth", "speed", "duration"]
+    assert fields["depth"].help == "Depth below the flat surface, m."
+    assert (fields["speed"].unit, fields["speed"].default) == ("m/s", "1 µm/s")
+    assert "Time" in figures([Shown("held", "#000000", extending.relaxation)], "light")
+    monkeypatch.setitem(sys.modules, "extending_example", extending)
+    names: dict = {}
+    exec(python_lines(relaxing, Path()), names)
+    xr.testing.assert_equal(names["result"], experiment_from(relaxing, Path()).run())
+
+
+@pytest.mark.parametrize(
+    ("motion", "line"),
+    [
+        ({"start": "5 nm"}, "motion.depth: missing; must be a length with its unit"),
+        ({"depht": "2 nm", **RELAXING["motion"]}, "motion.depht: unknown key; did you mean"),
+        ({**RELAXING["motion"], "speed": "0 m/s"}, "motion.speed = '0 m/s': must be greater than"),
+        ({**RELAXING["motion"], "speed": "1 nm"}, "motion.speed = '1 nm': must be a speed with"),
+        ({**RELAXING["motion"], "start": "0 nm"}, "motion.start = '0 nm': start height = 0 m: "),
+        ({**RELAXING["motion"], "shape": "sine"}, "motion.shape = 'sine': must be 'press'"),
+    ],
+)
+def test_files_of_the_mode_of_the_extending_page_are_refused_in_a_line(relaxing, motion, line):
+    with pytest.raises(ValueError, match=f"^{re.escape(line)}") as refused:
+        experiment_from({**relaxing, "motion": motion}, Path())
+    assert len(str(refused.value).splitlines()) == 1
+
+
 # The other pages
 
 
@@ -277,3 +395,23 @@ def test_documents_install_a_copy_of_the_repository_as_it_is_not_published():
         assert all(target.startswith(".") for target in targets), name
     for name in ("README.md", "index.md", "page.md"):
         assert "not on PyPI" in texts[name]
+
+
+def test_a_motion_of_a_plain_class_is_the_same_path_by_points(extending):
+    motion = extending.landing
+    contact = sa.Contact(sa.Paraboloid(10e-9), SAMPLE, sa.LennardJones(1e-19, 0.3e-9))
+    time = np.linspace(0, motion.breaks[-1], 4001)
+    path = sa.Trajectory(time, motion.height(time), smooth=True)
+    one, two = (sa.force_distance(contact, each, tolerance=1e-3) for each in (motion, path))
+    for name in ("force_min", "force_max", "loop_energy"):
+        assert float(one[name]) == pytest.approx(float(two[name]), rel=2e-3)
+    assert json.loads(one.attrs["experiment"])["motion"]["decay"] == 1e-4
+
+
+def test_lines_of_prose_are_wrapped():
+    pages = [DOCS.parent / "README.md", DOCS.parent / "CONTRIBUTING.md", *DOCS.rglob("*.md")]
+    for page in pages:
+        text = page.read_text(encoding="utf-8")
+        prose = re.sub(r"```.*?```", "", text, flags=re.S)
+        long = [line for line in prose.splitlines() if len(line) > 100 and line[0] not in "|!"]
+        assert not long, f"{page.name}: wrap with tools/wrap.py"

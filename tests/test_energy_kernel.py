@@ -11,6 +11,7 @@ import softafm as sa
 from softafm.bodies import HalfSpace
 from softafm.bodies.mesh import node_index, unit_mesh
 from softafm.bodies.stiffness import Stiffness
+from softafm.instrument.compiled_levers import hold, remember_nothing
 from softafm.solvers.energy.equilibrium import descend, equilibrate, tip_force
 from softafm.solvers.energy.frame import radius_of_gap, reframe, transfer
 from softafm.solvers.energy.layout import (
@@ -456,7 +457,7 @@ def test_steps_equal_those_of_a_plain_newton_method():
     height, height_parameters = motion.compiled_height
     profile, tip_parameters = TIP.compiled_profile
     parameters = Parameters(
-        height_parameters, tip_parameters, PARAMETERS, compliance, retardation, np.zeros(2)
+        height_parameters, tip_parameters, PARAMETERS, compliance, retardation, np.empty(0)
     )
     controls = Controls(
         end=1.0, shortest_step=step / 10, longest_step=step, top_speed=1e-300, open_frame=FRAME,
@@ -472,8 +473,8 @@ def test_steps_equal_those_of_a_plain_newton_method():
     clock["axis_gap"] = motion.height(0.0)
     records, shapes = np.zeros(count, RECORD_FIELDS), np.zeros((count, n))
     outcome, taken = advance(
-        height, profile, PRESSURE, parameters, background, MESH, UNIFORM, controls, fields, clock,
-        records, shapes, new_room(n, MESH.far.size, modes),
+        height, profile, PRESSURE, hold, remember_nothing, parameters, background, MESH, UNIFORM,
+        controls, fields, clock, np.empty(0), records, shapes, new_room(n, MESH.far.size, modes),
     )  # fmt: skip
     assert outcome == FULL
     assert taken == count

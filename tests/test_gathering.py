@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import softafm as sa
-from softafm.checks.gathering import gather, kind_of, worst_of_each_kind
+from softafm.checks.gathering import find_kind, gather, keep_worst
 
 CONTACT = sa.Contact(
     sa.Paraboloid(10e-9),
@@ -113,9 +113,9 @@ def test_kinds_are_told_apart_by_their_words():
         ("b", sa.AccuracyWarning("no steady cycle after 41: off by 2", 2.0)),
         ("c", sa.AccuracyWarning("the domain of 5 nm is small")),
     ]
-    assert kind_of(found[0][1]) == kind_of(found[1][1]) != kind_of(found[3][1])
+    assert find_kind(found[0][1]) == find_kind(found[1][1]) != find_kind(found[3][1])
     assert [str(each) for each in gather(found, 9, "runs", str.upper)] == [
         "2 of 9 runs, the worst at B: no steady cycle after 40: off by 7",
         "1 of 9 runs, at C: the domain of 5 nm is small",
     ]
-    assert worst_of_each_kind(each for _, each in found) == [found[1][1], found[3][1]]
+    assert keep_worst(each for _, each in found) == [found[1][1], found[3][1]]

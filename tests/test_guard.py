@@ -120,7 +120,7 @@ def gone(number):
 def test_it_ends_with_whoever_asked(end, seconds):
     """At once by Ctrl-C; when its time is over if the one who asked was killed."""
     command = [sys.executable, "-c", ASK, str(seconds)]
-    environment = guard.environment() | {"PYTHONPATH": os.pathsep.join(sys.path)}
+    environment = guard.make_environment() | {"PYTHONPATH": os.pathsep.join(sys.path)}
     with subprocess.Popen(
         command,
         stdout=subprocess.PIPE,

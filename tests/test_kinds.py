@@ -1,5 +1,7 @@
 """Objects of a wrong kind: one line names the argument, what was given and what would be valid."""
 
+import re
+
 import numpy as np
 import pytest
 import xarray as xr
@@ -197,3 +199,75 @@ def test_a_wrapper_that_passes_attributes_on_still_solves():
 
     wrapped = sa.force_distance(CONTACT, RAMP, solver=Logged(sa.solvers.Energy()))
     np.testing.assert_array_equal(wrapped["force"], sa.force_distance(CONTACT, RAMP)["force"])
+
+
+class Spoiled:
+    """A ramp of someone's own in which one attribute is not what it should be."""
+
+    kind, landmarks = "spoiled", RAMP.landmarks
+    breaks, top_speed = RAMP.breaks, RAMP.top_speed
+    compiled_height = RAMP.compiled_height
+
+    def height(self, time):
+        return RAMP.height(time)
+
+    def velocity(self, time):
+        return RAMP.velocity(time)
+
+    def __init__(self, **attributes):
+        vars(self).update(attributes)
+
+
+def test_a_motion_of_a_plain_class_is_a_motion():
+    one, two = sa.force_distance(CONTACT, Spoiled()), sa.force_distance(CONTACT, RAMP)
+    np.testing.assert_array_equal(one["force"], two["force"])
+
+
+@pytest.mark.parametrize(
+    ("wrong", "said"),
+    [
+        ({"breaks": np.array([0.0])}, "motion.breaks = [0.]: of the motion 'spoiled' must be an"),
+        ({"breaks": RAMP.breaks[::-1]}, "array of two times or more, s, ever later"),
+        ({"landmarks": np.array([1.0])}, "must be an array of times between the breaks"),
+        ({"top_speed": 0.0}, "motion.top_speed = 0: of the motion 'spoiled' must be above 0 m/s"),
+        ({"top_speed": 0.9e-3}, "must be at least the speed at"),
+        ({"height": lambda time: 1e-9}, "motion.height(time) = 1e-09: of the motion"),
+        ({"velocity": lambda time: -RAMP.velocity(time)}, "must be the slope of the height there"),
+        ({"compiled_height": (RAMP.height, np.zeros(4))}, "compiled(HEIGHT)"),
+        ({"compiled_height": (RAMP.compiled_height[0], [0.0])}, "must be an array of floats"),
+        (
+            {"compiled_height": sa.Triangle(4e-9, 1e-9, 1e-3).compiled_height},
+            "must be the height there",
+        ),
+    ],
+)
+def test_a_motion_that_contradicts_itself_is_refused(wrong, said):
+    with pytest.raises(ValueError, match=re.escape(said)):
+        sa.force_distance(CONTACT, Spoiled(**wrong))
+
+
+class OwnSolver:
+    kind, adaptive = "own", True
+
+    def solve(self, contact, motion, *, tolerance, **options):
+        return sa.solvers.Energy().solve(contact, motion, tolerance=tolerance, **options)
+
+
+def test_a_solver_of_a_plain_class_is_a_solver():
+    one, two = MODES["force_distance"](solver=OwnSolver()), MODES["force_distance"]()
+    np.testing.assert_array_equal(one["force"], two["force"])
+
+
+def test_a_solver_that_lacks_an_argument_or_a_history_is_refused():
+    class Short(OwnSolver):
+        def solve(self, contact, motion, *, stiffness=None, tolerance):
+            raise AssertionError("must not run")
+
+    class Empty(OwnSolver):
+        def solve(self, contact, motion, **options):
+            return None
+
+    with pytest.raises(ValueError, match="'own' must take profiles and progress"):
+        MODES["force_distance"](solver=Short())
+    with pytest.raises(ValueError, match=r"history = None: must be a softafm\.solvers\.History"):
+        MODES["force_distance"](solver=Empty())

@@ -11,7 +11,7 @@ import pytest
 from PIL import Image
 
 import softafm as sa
-from softafm.app.form import presets
+from softafm.app.form import read_presets
 from softafm.experiment import schema
 from softafm.experiment.config import (
     ConfigError,
@@ -20,8 +20,8 @@ from softafm.experiment.config import (
     load_experiment,
     map_names,
 )
-from softafm.maps.map_file import load_map, map_from
-from softafm.maps.patterns import blend
+from softafm.maps.map_file import build_map, load_map
+from softafm.maps.patterns import make_blend
 
 SMALL = ("map.pixels=[8, 8]", "map.size=['100 nm', '50 nm']", "map.interphase=15 nm")
 GREY = np.linspace(0, 255, 16).reshape(2, 8).astype(np.uint8)
@@ -73,13 +73,13 @@ def small(*more):
 
 
 def test_the_bundled_blend_is_what_python_would_build():
-    found = map_from(tomllib.loads(example_text("blend")), None)
+    found = build_map(tomllib.loads(example_text("blend")), None)
     contacts = [
         sa.Contact(TIP, sa.samples.polystyrene(), sa.LennardJones(2e-20, 0.15e-9)),
         sa.Contact(TIP, sa.samples.ldpe(), sa.LennardJones(1e-19, 0.25e-9)),
     ]
     size = (600e-9, 600e-9)
-    share = blend((128, 128), size, feature=45e-9, share=0.36, interphase=20e-9, seed=8)
+    share = make_blend((128, 128), size, feature=45e-9, share=0.36, interphase=20e-9, seed=8)
     same = sa.SampleMap.mixed(share, *contacts, size)
     assert found.materials == ("polystyrene", "LDPE")
     assert found.sample.materials == same.materials
@@ -102,25 +102,25 @@ def test_a_run_is_the_scan(folder):
 
 def test_labels_choose_among_any_materials(folder):
     document = volume({"name": "a b", **PS}, LDPE, STIFF, pattern="labels", file="labels.npy")
-    found = map_from(document, folder)
+    found = build_map(document, folder)
     np.testing.assert_array_equal(found.sample.labels, np.arange(16).reshape(2, 8) % 3)
     assert [each.sample.kind for each in found.sample.materials][2] == "elastic"
     result = found.run()
     assert result["material"].attrs["flag_meanings"] == "a_b 1 2"
     document = volume(PS, STIFF, pattern="labels", file="two.png")
-    np.testing.assert_array_equal(map_from(document, folder).sample.labels, GREY > 100)
+    np.testing.assert_array_equal(build_map(document, folder).sample.labels, GREY > 100)
 
 
 def test_a_share_mixes_two_materials(folder):
     for file in ("grey.png", "share.npy"):
         document = volume(PS, LDPE, pattern="share", file=file)
-        found = map_from(document, folder).sample.fields["sample.E_inf"]
+        found = build_map(document, folder).sample.fields["sample.E_inf"]
         np.testing.assert_allclose(found, 1.89e9 ** (1 - GREY / 255) * 0.1e9 ** (GREY / 255))
 
 
 def test_a_blend_without_interphase_is_of_any_two_materials():
     keys = {"pixels": [8, 4], "feature": "20 nm", "share": 0.5}
-    found = map_from(volume(PS, STIFF, pattern="blend", **keys), None).sample
+    found = build_map(volume(PS, STIFF, pattern="blend", **keys), None).sample
     assert found.shape == (4, 8)
     assert found.labels.mean() == 0.5
 
@@ -130,7 +130,7 @@ def test_fields_and_height_come_from_images_and_arrays(folder):
     table = {"fields": {"sample.E_inf": ends, "surface": {"z0": {"image": "height.npy"}}}}
     np.save("height.npy", 0.15e-9 + 1e-12 * GREY)
     table["height"] = {"image": "share.npy", "from": "5 nm", "to": "0 nm"}
-    found = map_from(volume(PS, **table), folder).sample
+    found = build_map(volume(PS, **table), folder).sample
     np.testing.assert_allclose(found.fields["sample.E_inf"], 0.1e9 + 0.9e9 * GREY / 255)
     np.testing.assert_array_equal(found.fields["surface.z0"], 0.15e-9 + 1e-12 * GREY)
     np.testing.assert_allclose(found.height, 5e-9 * (1 - GREY / 255), atol=1e-24)
@@ -140,7 +140,7 @@ def test_fields_and_height_come_from_images_and_arrays(folder):
 def test_fields_go_over_those_of_a_blend(folder):
     table = {"pattern": "share", "file": "share.npy"}
     table["fields"] = {"sample.E0": {"image": "grey.png", "from": "3 GPa", "to": "4 GPa"}}
-    fields = map_from(volume(PS, LDPE, **table), folder).sample.fields
+    fields = build_map(volume(PS, LDPE, **table), folder).sample.fields
     np.testing.assert_allclose(fields["sample.E0"], 3e9 + 1e9 * GREY / 255)
     assert np.ptp(fields["sample.E_inf"]) > 1e9
 
@@ -157,13 +157,13 @@ def test_every_number_of_samples_and_laws_has_a_unit():
 def test_the_documents_show_map_files(folder):
     page = (Path(__file__).parents[1] / "docs" / "maps.md").read_text(encoding="utf-8")
     whole, part = re.findall(r"```toml\n(.*?)```", page, re.S)
-    found = map_from(tomllib.loads(whole), folder)
+    found = build_map(tomllib.loads(whole), folder)
     assert isinstance(found.imaging, sa.ForceVolume)
     assert found.sample.shape == (64, 64)
     Image.fromarray(GREY).save("relief.png")
     document = volume(PS)
     document["map"] |= tomllib.loads(part)["map"]
-    found = map_from(document, folder).sample
+    found = build_map(document, folder).sample
     assert (found.height.max(), found.fields["sample.E_inf"].min()) == (5e-9, 0.1e9)
 
 
@@ -172,27 +172,29 @@ def test_the_documents_show_map_files(folder):
 
 def test_a_blend_has_its_share_and_does_not_depend_on_pixels():
     size = (400e-9, 200e-9)
-    coarse = blend((32, 64), size, feature=60e-9, share=0.3, seed=4)
-    fine = blend((96, 192), size, feature=60e-9, share=0.3, seed=4)
+    coarse = make_blend((32, 64), size, feature=60e-9, share=0.3, seed=4)
+    fine = make_blend((96, 192), size, feature=60e-9, share=0.3, seed=4)
     assert set(np.unique(coarse)) == {0, 1}
     assert coarse.mean() == pytest.approx(0.3, abs=1 / coarse.size)
     centres = fine[1::3, 1::3]
     assert (coarse == centres).mean() > 0.97
-    other = blend((32, 64), size, feature=60e-9, share=0.3, seed=5)
+    other = make_blend((32, 64), size, feature=60e-9, share=0.3, seed=5)
     assert (coarse == other).mean() < 0.8
 
 
 def test_domains_are_as_wide_as_a_feature():
     size, pixels = 2e-6, 256
     for feature in (50e-9, 100e-9):
-        phase = blend((pixels, pixels), (size, size), feature=feature, share=0.5, seed=1)
+        phase = make_blend((pixels, pixels), (size, size), feature=feature, share=0.5, seed=1)
         crossings = np.abs(np.diff(phase, axis=1)).sum() / pixels
         assert size / crossings == pytest.approx(1.5 * feature, rel=0.25)
 
 
 def test_an_interphase_is_as_wide_as_told():
     size, width = 1e-6, 60e-9
-    share = blend((200, 200), (size, size), feature=300e-9, share=0.5, interphase=width, seed=2)
+    share = make_blend(
+        (200, 200), (size, size), feature=300e-9, share=0.5, interphase=width, seed=2
+    )
     assert (share.min(), share.max()) == (0, 1)
     steepest = np.hypot(*np.gradient(share, size / 200)).max()
     assert 1 / steepest == pytest.approx(width, rel=0.5)
@@ -228,7 +230,7 @@ def test_a_number_of_workers_is_refused(folder, softafm):
 
 def test_the_blend_is_an_example_but_no_experiment(folder, softafm):
     assert map_names() == ["blend"]
-    assert "blend" not in [*example_names(), *presets()]
+    assert "blend" not in [*example_names(), *read_presets()]
     assert re.search(r"^blend +Map of", softafm("example")[1], re.MULTILINE)
     _, out, _ = softafm("example", "blend", "--force")
     assert "softafm scan blend.toml" in out
@@ -353,7 +355,7 @@ def test_bad_files_are_refused_before_anything_starts(folder, softafm, override,
 def test_bad_documents_are_refused(folder, document, line):
     (folder / "broken.npy").write_bytes(b"\x93NUMPY")
     with pytest.raises(ConfigError) as refused:
-        map_from(document, folder)
+        build_map(document, folder)
     assert str(refused.value).startswith(line)
     assert "\n" not in str(refused.value)
 
@@ -362,7 +364,7 @@ def test_a_ramp_that_starts_inside_a_pixel_is_refused(folder):
     document = volume(PS, LDPE, pattern="labels", file="two.png")
     document["motion"]["start"] = "0.2 nm"
     with pytest.raises(ConfigError, match=r"^motion.start = '0.2 nm': .* at pixel \(0, 6\)$"):
-        map_from(document, folder).run()
+        build_map(document, folder).run()
 
 
 def test_a_sample_that_flows_is_not_tapped(folder):
@@ -371,4 +373,4 @@ def test_a_sample_that_flows_is_not_tapped(folder):
     document["map"]["materials"][1]["sample"] = fluid
     document["map"]["interphase"] = "0 nm"
     with pytest.raises(ConfigError, match=r"^map.materials\[1\].sample: 'maxwell' flows, so"):
-        map_from(document, folder)
+        build_map(document, folder)

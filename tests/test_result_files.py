@@ -11,7 +11,7 @@ import xarray as xr
 from result_samples import NAMES, results
 
 import softafm as sa
-from softafm.draw.summary import observables
+from softafm.draw.summary import list_observables
 from softafm.files.measured import read_path
 from softafm.results import files as result_files
 from softafm.results.content import NEEDED, PROFILES
@@ -184,7 +184,7 @@ def test_what_softafm_never_writes_is_refused_before_anything_is_read(
     def read(*_):
         raise AssertionError("a value was read")
 
-    monkeypatch.setattr(result_files, "_values", read)
+    monkeypatch.setattr(result_files, "_read_values", read)
     assert words in refusal(path)
 
 
@@ -266,7 +266,7 @@ def test_what_a_mode_needs_is_all_that_is_used(path, name, softafm):
     for command, suffix in wanted + [("animate", ".html")] * ("r" in result.dims):
         answer = softafm(command, path, "--out", path.with_suffix(suffix))
         assert answer == (0, f"saved {path.with_suffix(suffix)}\n", "")
-    assert observables(sa.load(path)).row_count > 0
+    assert list_observables(sa.load(path)).row_count > 0
 
 
 @pytest.mark.parametrize(

@@ -8,7 +8,7 @@ import pytest
 import softafm as sa
 from softafm.maps.imaging import AmplitudeModulation
 from softafm.maps.setpoint import ATTRACTIVE, BRANCHES, REPULSIVE
-from softafm.maps.tapped_lines import engaged_branch, setpoint_of
+from softafm.maps.tapped_lines import find_engaged_branch, make_setpoint
 from softafm.solvers import Energy
 
 LEVER = sa.Cantilever(stiffness=28.1, quality_factor=429.5, frequency=278e3)
@@ -29,7 +29,7 @@ def curve():
 
 @pytest.fixture
 def setpoint():
-    return setpoint_of(AmplitudeModulation(LEVER, FREE, RATIO), Energy(), 1e-2)
+    return make_setpoint(AmplitudeModulation(LEVER, FREE, RATIO), Energy(), 1e-2)
 
 
 def assert_on_curve(curve, setpoint, point):
@@ -53,9 +53,9 @@ def test_a_survey_finds_what_a_feedback_can_hold(curve, setpoint):
 @pytest.mark.parametrize("branch", [ATTRACTIVE, REPULSIVE])
 def test_a_solution_is_followed_to_a_similar_contact_in_few_taps(curve, setpoint, branch):
     similar = replace(PS, sample=replace(PS.sample, E_inf=1.95e9, E0=4.4e9))
-    start = setpoint.anew(similar, branch)
+    start = setpoint.start_anew(similar, branch)
     before = setpoint.taps
-    point = setpoint.carried(PS, start, start.approach, branch, np.nan)
+    point = setpoint.carry(PS, start, start.approach, branch, np.nan)
     assert setpoint.taps - before <= 4
     assert point.branch == branch
     assert not point.surveyed
@@ -63,17 +63,17 @@ def test_a_solution_is_followed_to_a_similar_contact_in_few_taps(curve, setpoint
 
 
 def test_a_bad_guess_still_ends_on_the_branch_asked_for(curve, setpoint):
-    start = setpoint.anew(PS, REPULSIVE)
+    start = setpoint.start_anew(PS, REPULSIVE)
     for guess in (start.approach + 1e-9, start.approach - 0.6e-9):
-        point = setpoint.carried(PS, start, guess, REPULSIVE, np.nan)
+        point = setpoint.carry(PS, start, guess, REPULSIVE, np.nan)
         assert point.branch == REPULSIVE
         assert_on_curve(curve, setpoint, point)
 
 
 def test_the_lever_jumps_where_its_branch_is_gone():
     # At 0.6 only repulsion exists (Fig. 9).
-    deeper = setpoint_of(AmplitudeModulation(LEVER, FREE, 0.6), Energy(), 1e-2)
-    point = deeper.carried(PS, None, np.nan, ATTRACTIVE, np.nan)
+    deeper = make_setpoint(AmplitudeModulation(LEVER, FREE, 0.6), Energy(), 1e-2)
+    point = deeper.carry(PS, None, np.nan, ATTRACTIVE, np.nan)
     assert point.branch == REPULSIVE
     curve = sa.approach_curve(PS, LEVER, FREE, [0.6])
     assert np.isnan(curve["mean_height"].sel(branch="attractive")).all()
@@ -96,12 +96,12 @@ def test_slopes_are_those_of_neighbouring_taps(setpoint):
 )
 def test_the_lever_engages_as_it_does_in_an_approach(ratio, branch):
     imaging = AmplitudeModulation(LEVER, FREE, ratio)
-    assert engaged_branch(imaging, PS, Energy(), 1e-2) == branch
+    assert find_engaged_branch(imaging, PS, Energy(), 1e-2) == branch
 
 
 def test_the_lever_engages_as_asked():
     imaging = AmplitudeModulation(LEVER, FREE, 0.8, engaged="repulsive")
-    assert engaged_branch(imaging, PS, Energy(), 1e-2) == REPULSIVE
+    assert find_engaged_branch(imaging, PS, Energy(), 1e-2) == REPULSIVE
 
 
 @pytest.mark.parametrize(

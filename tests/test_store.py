@@ -14,17 +14,17 @@ from hypothesis import strategies as st
 from softafm.sweeps import store as store_module
 from softafm.sweeps.block import DONE, FAILED, UNKNOWN, WARNED, Block
 from softafm.sweeps.campaign import Campaign, Observable
-from softafm.sweeps.progress import in_words, status
+from softafm.sweeps.progress import describe_duration, read_status
 from softafm.sweeps.store import (
     Busy,
     Store,
     StoreError,
-    blocks_of,
+    choose_blocks,
     create,
-    differences,
-    unpacked_size,
+    describe_difference,
+    read_unpacked_size,
 )
-from softafm.sweeps.sweep import load_sweep, opened
+from softafm.sweeps.sweep import load_sweep, open_store
 
 SHAPE = (3, 7)
 
@@ -159,8 +159,8 @@ def test_one_process_writes_at_a_time(store):
     ],
 )
 def test_another_campaign_is_told_from_the_one_that_began_it(store, changes, words):
-    assert differences(store, campaign()) is None
-    assert differences(store, campaign(**changes)) == words
+    assert describe_difference(store, campaign()) is None
+    assert describe_difference(store, campaign(**changes)) == words
 
 
 def test_what_is_no_store_is_refused(tmp_path, store):
@@ -176,7 +176,7 @@ def test_what_is_no_store_is_refused(tmp_path, store):
 
 @given(st.lists(st.integers(1, 50), min_size=1, max_size=4), st.integers(1, 200))
 def test_blocks_are_no_larger_than_asked_and_cut_the_first_axes_first(shape, runs):
-    block = blocks_of(shape, runs)
+    block = choose_blocks(shape, runs)
     assert np.prod(block) <= runs
     assert all(1 <= b <= n for b, n in zip(block, shape, strict=True))
     cut = [axis for axis, (b, n) in enumerate(zip(block, shape, strict=True)) if b < n]
@@ -193,18 +193,18 @@ def test_the_status_is_read_from_the_store_alone(store, tmp_path):
         os.utime(file, (1000.0 + 2 * number, 1000.0 + 2 * number))
     os.utime(store.path / ".lock", (998.0, 998.0))
     Path(store.path / "state/2.1").unlink()
-    found = status(store.path)
+    found = read_status(store.path)
     assert (found.runs, found.done, found.failed, found.warned) == (21, 18, 1, 1)
     assert found.rate == pytest.approx(18 / 10)
     assert found.seconds_left == pytest.approx(3 / 1.8)
     assert found.example == "a[0], b[0]: it µst fail"
     assert not found.running
-    fresh = status(create(tmp_path / "new.zarr", campaign(), 4).path)
+    fresh = read_status(create(tmp_path / "new.zarr", campaign(), 4).path)
     assert (fresh.done, fresh.rate, fresh.seconds_left) == (0, None, None)
 
 
 def test_durations_in_words():
-    told = [in_words(seconds) for seconds in (3, 119, 300, 9000, 1e6)]
+    told = [describe_duration(seconds) for seconds in (3, 119, 300, 9000, 1e6)]
     assert told == ["3 s", "119 s", "5 min", "2 h", "12 days"]
 
 
@@ -220,7 +220,7 @@ def changed(store, name, change):
 
 
 def test_a_store_is_loaded_as_xarray_reads_it(store):
-    ours, theirs = load_sweep(store.path), opened(store).load()
+    ours, theirs = load_sweep(store.path), open_store(store).load()
     xarray.testing.assert_identical(ours, theirs)
     assert list(ours.variables) == list(theirs.variables)
     assert {n: v.dtype for n, v in ours.variables.items()} == {
@@ -228,7 +228,7 @@ def test_a_store_is_loaded_as_xarray_reads_it(store):
     }
     for file in ("one/0.1", "state/0.1", "reason/0.0"):
         (store.path / file).unlink()
-    xarray.testing.assert_identical(load_sweep(store.path), opened(store).load())
+    xarray.testing.assert_identical(load_sweep(store.path), open_store(store).load())
 
 
 @pytest.mark.parametrize(
@@ -264,7 +264,7 @@ def test_a_store_is_loaded_as_xarray_reads_it(store):
 )
 def test_what_no_sweep_writes_is_refused_before_it_is_used(store, softafm, name, values, words):
     changed(store, name, lambda told: told.update(values))
-    for attempt in (load_sweep, status, Store):
+    for attempt in (load_sweep, read_status, Store):
         with pytest.raises(StoreError) as caught:
             attempt(store.path)
         assert str(caught.value).startswith(f"{store.path}: ")
@@ -284,7 +284,7 @@ def test_what_no_sweep_writes_is_refused_before_it_is_used(store, softafm, name,
 )  # fmt: skip
 def test_metadata_that_make_no_sense_are_refused(store, softafm, file, content):
     (store.path / file).write_text(content)
-    for attempt in (load_sweep, status):
+    for attempt in (load_sweep, read_status):
         with pytest.raises(StoreError, match=r"s\.zarr: (is no store of a sweep|its campaign)"):
             attempt(store.path)
     code, out, said = softafm("sweep", "--status", store.path)
@@ -317,7 +317,7 @@ def test_a_chunk_that_stands_for_more_than_it_may_is_not_unpacked(store, monkeyp
     """Of zeros a few bytes stand for many; their frame says so."""
     packed = store_module._CODEC.encode(bytes(50_000_000))
     assert len(packed) < 10_000
-    assert unpacked_size(packed) == 50_000_000
+    assert read_unpacked_size(packed) == 50_000_000
     (store.path / "one/0.0").write_bytes(packed)
     (store.path / "reason/0.0").write_bytes(packed)
     monkeypatch.setattr(store_module, "_LARGEST_TEXTS", 1000)
@@ -325,10 +325,10 @@ def test_a_chunk_that_stands_for_more_than_it_may_is_not_unpacked(store, monkeyp
     with pytest.raises(StoreError, match=r"is damaged \(one: 0.0 has 50000000 bytes unpacked\)"):
         load_sweep(store.path)
     for size in (0, 100, 300, 70_000):
-        assert unpacked_size(store_module._CODEC.encode(bytes(size))) == size
+        assert read_unpacked_size(store_module._CODEC.encode(bytes(size))) == size
     for odd in (b"", b"odd", packed[:5], b"\x28\xb5\x2f\xfd\x00\x00\x00\x00"):
         with pytest.raises(ValueError, match=r"Zstandard|say what size"):
-            unpacked_size(odd)
+            read_unpacked_size(odd)
 
 
 def test_more_than_memory_may_hold_is_not_loaded(store, monkeypatch):
@@ -344,7 +344,7 @@ def test_the_status_of_a_large_store_that_holds_nothing_is_told_at_once(store):
     changed(store, "two/.zarray", lambda told: told.update({"shape": [10**7, 7, 2],
                                                             "chunks": [100, 4, 2]}))  # fmt: skip
     started = time.monotonic()
-    assert status(store.path).runs == 7 * 10**7
+    assert read_status(store.path).runs == 7 * 10**7
     assert time.monotonic() - started < 5
 
 
@@ -353,4 +353,4 @@ def test_what_is_in_the_folder_besides_is_left_alone(store):
     (store.path / "one" / "notes.txt").write_text("x")
     (store.path / "state" / "99.99").write_bytes(b"x")
     assert load_sweep(store.path)["state"].shape == SHAPE
-    assert status(store.path).runs == 21
+    assert read_status(store.path).runs == 21

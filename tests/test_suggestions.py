@@ -5,9 +5,10 @@ from pathlib import Path
 import pytest
 
 from softafm.checks.refusals import ConfigError
-from softafm.checks.suggestions import meant
+from softafm.checks.suggestions import guess
 from softafm.experiment import schema
 from softafm.experiment.config import document_from, example_text, experiment_from
+from softafm.modes import MODES
 
 MODELS = list(schema.CHOICES["sample"][1])
 LAWS = list(schema.CHOICES["surface"][1])
@@ -59,25 +60,25 @@ TAP = list(schema.TapMotion.model_fields)
         ("modulus", ["E", "poisson"], ["E"]),
         ("E", ["E0", "E_inf", "poisson"], ["E0"]),
         ("R", ["radius", "shape"], ["radius"]),
-        ("tapping", list(schema.MOTIONS), ["tapping-cycle"]),
+        ("tapping", list(MODES), ["tapping-cycle"]),
         ("xyz", MODELS, []),
         ("", MODELS, []),
         ("x" * 1000, MODELS, []),
     ],
 )
 def test_what_is_meant(given, valid, expected):
-    assert meant(given, valid) == expected
+    assert guess(given, valid) == expected
 
 
 def test_every_other_word_leads_to_a_name_that_exists():
     names = {name for _, choices in schema.CHOICES.values() for name in choices}
     names |= {chooser for chooser, _ in schema.CHOICES.values()} | {*schema.KEYS, *TABLES, "map"}
     tables = [t for _, choices in schema.CHOICES.values() for t in choices.values()]
-    tables += [t for shapes in schema.MOTIONS.values() for t in shapes.values()]
+    tables += [t for mode in MODES.values() for t in schema.motions_of(mode).values()]
     tables += [schema.ResonatorTable, schema.Run]
     names |= {"iterative"}
     names |= {key for table in tables for key in table.model_fields}
-    names |= {*schema.MOTIONS, "tapping-map", "force-volume", "setpoint", "drive_frequency"}
+    names |= {*MODES, "tapping-map", "force-volume", "setpoint", "drive_frequency"}
     from softafm.checks.suggestions import _OTHER_WORDS
 
     assert set(_OTHER_WORDS) <= names

@@ -143,7 +143,7 @@ def test_bad_arguments_are_refused(options, words, tmp_path):
 
 
 def test_many_runs_or_days_need_a_yes(monkeypatch):
-    slow = sweeps.campaign_of(calm, Path(), sweeps.Table({"x": XS, "y": YS}), from_file=False)
+    slow = sweeps.make_campaign(calm, Path(), sweeps.Table({"x": XS, "y": YS}), from_file=False)
     object.__setattr__(slow, "seconds", 3000.0)
     with pytest.raises(ValueError, match=r"140 runs .*, about 2 days on 2 workers: .* add --yes"):
         sweeps.refuse_size(slow, None, 2, yes=False)
@@ -153,11 +153,11 @@ def test_many_runs_or_days_need_a_yes(monkeypatch):
 
 def test_a_batch_is_about_two_seconds_of_expected_work_and_leaves_some_for_all():
     def batch(seconds, runs):
-        found = sweeps.campaign_of(
+        found = sweeps.make_campaign(
             lambda x: {"y": x}, Path(), sweeps.Table({"x": range(runs)}), from_file=False
         )
         object.__setattr__(found, "seconds", seconds)
-        return sweeps._batch(found)
+        return sweeps._choose_batch(found)
 
     assert batch(20e-3, 10_000) == 100
     assert batch(1e-6, 10**5) == 1000

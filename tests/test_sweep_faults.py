@@ -18,7 +18,7 @@ from swept import XS, YS, calm, deadly
 import softafm as sa
 from softafm.experiment.config import example_text
 from softafm.sweeps.execution import Halted
-from softafm.sweeps.progress import status
+from softafm.sweeps.progress import read_status
 
 resource = pytest.importorskip("resource")
 
@@ -123,12 +123,12 @@ def test_a_client_that_is_killed_leaves_a_store_to_go_on_with(folder, taps):
     process = subprocess.Popen([*CALL, "sweep", "taps.toml", "--workers", "2"])
     until(lambda: finished("taps.zarr") >= 3 or process.poll() is not None)
     assert process.poll() is None
-    assert status("taps.zarr").running
+    assert read_status("taps.zarr").running
     children = psutil.Process(process.pid).children(recursive=True)
     process.kill()
     process.wait()
     until(lambda: not any(child.is_running() and child.status() != "zombie" for child in children))
-    found = status("taps.zarr")
+    found = read_status("taps.zarr")
     assert not found.running
     assert 15 <= found.done < found.runs == 180
 
@@ -160,7 +160,7 @@ def test_ctrl_c_says_in_one_line_how_to_go_on(folder, taps):
     assert err == (
         "softafm: interrupted; what is finished is in taps.zarr; --resume goes on with it\n"
     )
-    assert 0 < status("taps.zarr").done < 180
+    assert 0 < read_status("taps.zarr").done < 180
     same(sa.sweep("taps.toml", workers=0, store="taps.zarr", resume=True).load(), taps)
 
 
@@ -207,7 +207,7 @@ def test_a_scheduler_that_goes_away_halts_a_sweep_which_can_be_resumed(
 
     with pytest.raises(Halted, match="scheduler is gone"):
         sa.sweep(calm, GRID, store=store, progress=kill, **options)
-    assert 20 < status(store).done < 140
+    assert 20 < read_status(store).done < 140
     found = sa.sweep(calm, GRID, store=store, workers=0, resume=True)
     same(found, quiet)
     assert capfd.readouterr() == ("", "")
@@ -235,7 +235,7 @@ def test_a_disk_without_room_halts_a_sweep_which_can_be_resumed(tmp_path, quiet)
             sa.sweep(calm, GRID, store=store, workers=0, batch=5, progress=fill)
     finally:
         resource.setrlimit(resource.RLIMIT_FSIZE, limits)
-    assert status(store).done == 5
+    assert read_status(store).done == 5
     assert not list(store.rglob("*.part"))
     same(sa.sweep(calm, GRID, store=store, workers=0, resume=True), quiet)
 
@@ -262,7 +262,7 @@ def test_a_full_disk_is_told_in_one_line(folder, taps):
             f"softafm: {store} could not be written: No space left on device; what is finished is "
             f"in {store}; --resume goes on with it\n"
         )
-        assert 0 < status(store).done < 180
+        assert 0 < read_status(store).done < 180
         free.unlink()
         subprocess.run(["mount", "-o", "remount,size=10m", str(disk)], check=True)
         said = subprocess.run([*command, "--resume"], capture_output=True, text=True)

@@ -7,7 +7,7 @@ import pytest
 import xarray as xr
 
 import softafm as sa
-from softafm.draw.approach_data import jumps_of
+from softafm.draw.approach_data import find_jumps
 from softafm.modes.approach import deepest_tap, drive_of
 
 
@@ -38,31 +38,31 @@ def fold(count, turn=0.0):
 @pytest.mark.parametrize("turn", [0.0, 0.3, 0.7])
 def test_a_fold_is_one_jump_however_steep_the_branch_before_it(count, turn):
     y = fold(count, turn)
-    ((before, after),) = jumps_of(swept(10e-9 + 1e-9 * y, 90 + 30 * y), "approach")
+    ((before, after),) = find_jumps(swept(10e-9 + 1e-9 * y, 90 + 30 * y), "approach")
     assert after == before + 1
     assert y[before] > 0.5
     assert y[after] < -1.1
-    assert jumps_of(swept(10e-9 + 1e-9 * y, 90 + 30 * y), "retract") == [(after, before)]
+    assert find_jumps(swept(10e-9 + 1e-9 * y, 90 + 30 * y), "retract") == [(after, before)]
 
 
 def test_a_smooth_sweep_has_no_jumps():
     z = np.linspace(0, 1, 241)
-    assert jumps_of(swept(15e-9 - 12e-9 * z, 90 + 60 * np.tanh(30 * (z - 0.5))), "approach") == []
-    assert jumps_of(swept(np.full(50, 1e-8), np.full(50, 90.0)), "retract") == []
+    assert find_jumps(swept(15e-9 - 12e-9 * z, 90 + 60 * np.tanh(30 * (z - 0.5))), "approach") == []
+    assert find_jumps(swept(np.full(50, 1e-8), np.full(50, 90.0)), "retract") == []
 
 
 def test_leaving_and_entering_the_range_is_no_jump():
     amplitude, phase = np.linspace(14e-9, 4e-9, 60), np.linspace(100, 150, 60)
     amplitude[:5] = phase[:5] = amplitude[40:44] = phase[40:44] = np.nan
-    assert jumps_of(swept(amplitude, phase), "approach") == []
+    assert find_jumps(swept(amplitude, phase), "approach") == []
     phase[20:] -= 90
-    assert jumps_of(swept(amplitude, phase), "approach") == [(19, 20)]
+    assert find_jumps(swept(amplitude, phase), "approach") == [(19, 20)]
 
 
 @pytest.mark.parametrize("count", [0, 1, 2])
 def test_hardly_any_heights_have_no_jumps(count):
     empty = np.full(count, np.nan)
-    assert jumps_of(swept(empty, empty), "approach") == []
+    assert find_jumps(swept(empty, empty), "approach") == []
 
 
 LEVER = sa.Cantilever(28.1, quality_factor=429.5, frequency=278e3)

@@ -252,8 +252,21 @@ def test_noise_stated_far_too_large_is_doubtful(samples):
     misfit = np.sqrt(np.mean((path.height(time) - heights) ** 2))
     (doubt,) = path.doubts
     assert "noise is taken to be 5e-09 m: so large a noise hides motion" in doubt
-    assert doubt.endswith(f"state one of about {misfit:.2g} m, or none")
+    assert doubt.endswith(f"state noise = {misfit:.2g} m, or leave it out")
     assert sa.Trajectory.from_measurement(time, heights, noise=0.2e-9).doubts == ()
+
+
+def test_noise_estimated_far_too_large_is_doubtful_and_to_be_stated():
+    ramp = sa.Triangle(10e-9, -5e-9, 1e-6)
+    time, heights = record(ramp, 400, 0.0)
+    heights[::2] += 0.3e-9  # two converters that take turns, with different offsets
+    path = sa.Trajectory.from_measurement(time, heights)
+    misfit = np.sqrt(np.mean((path.height(time) - heights) ** 2))
+    assert path.noise > 2 * misfit
+    (doubt,) = path.doubts
+    assert "so large a noise hides motion" in doubt
+    assert doubt.endswith(f"state noise = {misfit:.2g} m, in place of the estimate")
+    assert sa.Trajectory.from_measurement(time, heights, noise=misfit).doubts == ()
 
 
 def test_fast_waves_are_no_noise():

@@ -56,9 +56,9 @@ class _Failure(Exception):
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run the command line and return its exit code: 0 success, 2 bad input, 1 failure."""
     try:
-        with _visible_warnings():
+        with _show_warnings():
             code = app(args=arguments, prog_name="softafm", standalone_mode=False)
-        return _interrupted() if code == _TYPER_INTERRUPTED else int(code or SUCCESS)
+        return _report_interruption() if code == _TYPER_INTERRUPTED else int(code or SUCCESS)
     except typer.TyperException as error:  # how typer reports a wrong option or argument
         return _complain(f"{error.format_message()} (see softafm --help)", BAD_INPUT)
     except _BadInput as error:
@@ -66,7 +66,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     except _Failure as error:
         return _complain(str(error), FAILURE)
     except (KeyboardInterrupt, typer.Abort):
-        return _interrupted()
+        return _report_interruption()
     except Exception as error:
         if os.environ.get("SOFTAFM_TRACEBACK"):
             raise
@@ -108,16 +108,16 @@ def run(
     changes += ["run.profiles=true"] if profiles else []
     changes += ["run.check=true"] if check else []
     changes += [f"run.regularise={regularise}"] if regularise is not None else []
-    with _bad_input():
-        from softafm.draw.summary import observables
+    with _report_bad_input():
+        from softafm.draw.summary import list_observables
         from softafm.experiment.config import load_experiment
         from softafm.results import datasets as results
 
         experiment = load_experiment(config, changes)
-        out = _output(out, f"{config.stem}.nc", (".nc",), force)
-    dataset = _carried_out("run", experiment.run)
+        out = _choose_output(out, f"{config.stem}.nc", (".nc",), force)
+    dataset = _carry_out("run", experiment.run)
     _save(partial(results.save, dataset), out, force)
-    _print(observables(dataset))
+    _print(list_observables(dataset))
     typer.echo(f"saved {out}")
 
 
@@ -130,27 +130,27 @@ def scan(
     force: Force = False,
 ) -> None:
     """Image the sample of a map file, save the maps and show their ranges."""
-    with _bad_input():
+    with _report_bad_input():
         from softafm.checks.validate import whole
-        from softafm.draw.summary import observables
+        from softafm.draw.summary import list_observables
         from softafm.maps.map_file import load_map
         from softafm.results import datasets as results
 
-        workers = _cores() if workers is None else whole("--workers", workers, 1, 1024)
+        workers = _count_cores() if workers is None else whole("--workers", workers, 1, 1024)
         experiment = load_map(config, overrides or [])
-        out = _output(out, f"{config.stem}.nc", (".nc",), force)
-    dataset = _carried_out("scan", partial(experiment.run, workers))
+        out = _choose_output(out, f"{config.stem}.nc", (".nc",), force)
+    dataset = _carry_out("scan", partial(experiment.run, workers))
     _save(partial(results.save, dataset), out, force)
-    _print(observables(dataset))
+    _print(list_observables(dataset))
     typer.echo(f"saved {out}")
 
 
-def _carried_out(what: str, run: "Callable[..., Dataset]") -> "Dataset":
+def _carry_out(what: str, run: "Callable[..., Dataset]") -> "Dataset":
     """Return what a run gives, shown as it goes on; why it ends early is told in one line."""
     from softafm.experiment.config import ConfigError
 
     try:
-        with _progress() as progress:
+        with _show_progress() as progress:
             return run(progress)
     except ConfigError as error:
         raise _BadInput(str(error)) from error
@@ -158,7 +158,7 @@ def _carried_out(what: str, run: "Callable[..., Dataset]") -> "Dataset":
         raise _Failure(f"the {what} failed: {error}") from error
 
 
-def _cores() -> int:
+def _count_cores() -> int:
     """Return how many cores this process may use."""
     if hasattr(os, "sched_getaffinity"):
         return max(1, len(os.sched_getaffinity(0)))
@@ -180,9 +180,9 @@ def example(
             typer.echo(f"{known:20} {title}")
         typer.echo("write one with: softafm example NAME")
         return
-    with _bad_input():
+    with _report_bad_input():
         text = example_text(name)
-        out = _output(out, f"{name}.toml", (".toml",), force)
+        out = _choose_output(out, f"{name}.toml", (".toml",), force)
     _save_content(text.encode(), out, force)
     command = "scan" if name in map_names() else "run"
     typer.echo(f"wrote {out}; run it with: softafm {command} {out}")
@@ -200,11 +200,11 @@ def plot(
     force: Force = False,
 ) -> None:
     """Draw one result, or several of the same mode in one figure."""
-    with _bad_input():
+    with _report_bad_input():
         if profiles and len(results) > 1:
             raise ValueError(f"{len(results)} results with --profiles: must be one")
         kind = "-profiles" if profiles else ""
-        out = _output(out, f"{results[0].stem}{kind}.png", _PICTURES, force)
+        out = _choose_output(out, f"{results[0].stem}{kind}.png", _PICTURES, force)
 
         from softafm.draw.results import plot as draw
         from softafm.draw.storyboard import plot_profiles
@@ -230,16 +230,16 @@ def animate(
     force: Force = False,
 ) -> None:
     """Write a movie of tip and surface; needs a result run with --profiles."""
-    with _bad_input():
+    with _report_bad_input():
         from softafm.draw import animation
 
-        out = _output(out, "", animation.SUFFIXES, force)
+        out = _choose_output(out, "", animation.SUFFIXES, force)
         write = partial(
             animation.animate,
             frames=frames,
             seconds=seconds,
-            start=_time("start", start),
-            stop=_time("stop", stop),
+            start=_read_time("start", start),
+            stop=_read_time("stop", stop),
             progress=sys.stderr.isatty(),
         )
         try:
@@ -258,7 +258,7 @@ def _load(path: Path) -> "Dataset":
     return results.load_apart(path)
 
 
-def _time(option: str, written: str | None) -> float | None:
+def _read_time(option: str, written: str | None) -> float | None:
     from softafm.units.quantities import TIME, read_quantity
 
     try:
@@ -270,7 +270,7 @@ def _time(option: str, written: str | None) -> float | None:
 @app.command()
 def info(config: Config, overrides: Overrides = None) -> None:
     """Show the regime, the scales and the expected cost of an experiment, without running it."""
-    with _bad_input():
+    with _report_bad_input():
         from softafm.experiment.config import load_experiment
         from softafm.experiment.regime import regime
 
@@ -286,8 +286,8 @@ def show(
     force: Force = False,
 ) -> None:
     """Draw what touches in an experiment: tip, surface law and sample."""
-    with _bad_input():
-        out = _output(out, f"{config.stem}-contact.png", _PICTURES, force)
+    with _report_bad_input():
+        out = _choose_output(out, f"{config.stem}-contact.png", _PICTURES, force)
 
         from softafm.draw.contact import plot_contact
         from softafm.experiment.config import load_experiment
@@ -305,8 +305,8 @@ def export(
     force: Force = False,
 ) -> None:
     """Write the curve of a result as text, or maps for Gwyddion, for other programs."""
-    with _bad_input():
-        out = _output(out, "", (".csv", ".gwy", ".h5"), force)
+    with _report_bad_input():
+        out = _choose_output(out, "", (".csv", ".gwy", ".h5"), force)
 
         from softafm import export_gwyddion
         from softafm.results import datasets as results
@@ -343,7 +343,7 @@ def sweep(
     """Run an experiment for many values of its fields, and keep what all runs give."""
     if (config is None) == (status is None):
         raise _BadInput("sweep: give a CAMPAIGN.toml, or --status and a store")
-    with _bad_input():
+    with _report_bad_input():
         try:
             from softafm.sweeps import sweep as sweeps
         except ModuleNotFoundError as error:
@@ -352,12 +352,12 @@ def sweep(
 
         if config is None:
             assert status is not None
-            _print(progress.table(progress.status(status)))
+            _print(progress.tabulate(progress.read_status(status)))
             return
         out = Path(f"{config.stem}.zarr") if out is None else out
-        campaign, batch = sweeps.planned(config, overrides or [])
+        campaign, batch = sweeps.plan(config, overrides or [])
         sweeps.refuse_size(campaign, scheduler, workers, yes)
-        ready = sweeps.prepared(
+        ready = sweeps.prepare(
             campaign, out, batch=batch, scheduler=scheduler, workers=workers, resume=resume,
             force=force,
         )  # fmt: skip
@@ -374,11 +374,11 @@ def sweep(
         raise _Failure(
             f"{out} could not be written: {error.strerror or error}; {goes_on}"
         ) from None
-    found = progress.status(out)
+    found = progress.read_status(out)
     if found.failed:
         example = f"{found.failed} of {found.runs} runs failed: {found.example}"
         print(f"softafm: warning: {example}", file=sys.stderr)
-    _print(progress.table(found))
+    _print(progress.tabulate(found))
     typer.echo(f"saved {out}")
 
 
@@ -402,7 +402,7 @@ def page(
     ] = 500.0,
 ) -> None:
     """Open the web page: forms, plots and surface movies; needs softafm\\[app]."""
-    with _bad_input():
+    with _report_bad_input():
         try:
             from softafm.app.limits import Limits
             from softafm.app.server import serve
@@ -414,7 +414,7 @@ def page(
             processes=processes,
             waiting=waiting,
             listed=listed,
-            run_seconds=_time("run-limit", run_limit) or 0.0,
+            run_seconds=_read_time("run-limit", run_limit) or 0.0,
             upload_bytes=int(1e6 * upload_limit),
             kept_bytes=int(1e6 * memory_limit),
         )
@@ -427,24 +427,24 @@ def _complain(text: str, code: int) -> int:
     return code
 
 
-def _interrupted() -> int:
+def _report_interruption() -> int:
     return _complain("interrupted, nothing written", FAILURE)
 
 
 @contextmanager
-def _bad_input() -> Iterator[None]:
+def _report_bad_input() -> Iterator[None]:
     """Report what is refused inside as bad input, and what is warned of in one line each.
 
     A run does not belong inside.
     """
     try:
-        with _visible_warnings():
+        with _show_warnings():
             yield
     except (ValueError, OSError) as error:
         raise _BadInput(str(error)) from error
 
 
-def _output(out: Path | None, default: str, suffixes: tuple[str, ...], force: bool) -> Path:
+def _choose_output(out: Path | None, default: str, suffixes: tuple[str, ...], force: bool) -> Path:
     """Return where to write, having made sure that it can be written; OSError or ValueError."""
     path = Path(default) if out is None else out
     if path.suffix.lower() not in suffixes:
@@ -496,11 +496,11 @@ def _print(renderable) -> None:
 
 
 @contextmanager
-def _progress() -> Iterator[Callable[[float, str], None]]:
+def _show_progress() -> Iterator[Callable[[float, str], None]]:
     """Yield what a run is to call with its progress: a bar on a terminal, and Ctrl-C heeded."""
     from softafm.progress import reporting
 
-    with _heeding_interrupts() as heed, reporting(sys.stderr.isatty()) as report:
+    with _heed_interrupts() as heed, reporting(sys.stderr.isatty()) as report:
 
         def progress(fraction: float, message: str) -> None:
             heed()
@@ -511,7 +511,7 @@ def _progress() -> Iterator[Callable[[float, str], None]]:
 
 
 @contextmanager
-def _heeding_interrupts() -> Iterator[Callable[[], None]]:
+def _heed_interrupts() -> Iterator[Callable[[], None]]:
     """Yield what a run must call now and then, for Ctrl-C to end it without fail.
 
     While arguments enter compiled code, numba loses a KeyboardInterrupt or turns it into another
@@ -543,7 +543,7 @@ def _heeding_interrupts() -> Iterator[Callable[[], None]]:
 
 
 @contextmanager
-def _visible_warnings() -> Iterator[None]:
+def _show_warnings() -> Iterator[None]:
     """Print warnings about input and result as one line each, once; leave others as they are."""
     with warnings.catch_warnings():
         warnings.simplefilter("always", AccuracyWarning)

@@ -8,21 +8,21 @@ import numpy as np
 
 from softafm.draw import approach_data, histories
 from softafm.draw.approach_data import DIRECTIONS, Curves
+from softafm.modes import MODES
 
 if TYPE_CHECKING:
     from xarray import Dataset
 
-AXES = {**histories.AXES, **approach_data.AXES}
 _MOST_POINTS = 20_000
 _MISSED = 1e-4
 """Of the range of a column, by how much each round of leaving out samples may at first miss it."""
 
 
 class Parts(NamedTuple):
-    """What is drawn of one result; each part has columns named as in ``AXES``."""
+    """What is drawn of one result; each part has columns by the names of variables."""
 
     lines: Curves
-    """``"approach"`` and ``"retract"``, with NaN where a line is interrupted."""
+    """``"approach"`` and ``"retract"``, or ``"curve"``; with NaN where a line is interrupted."""
     points: Curves
     """Points by what they are called."""
     jumps: dict[str, tuple[dict[str, np.ndarray], dict[str, np.ndarray]]]
@@ -30,7 +30,12 @@ class Parts(NamedTuple):
 
     def holds(self, *names: str) -> bool:
         """Whether there are columns of all these names."""
-        return all(name in self.lines["approach"] for name in names)
+        return all(name in columns for columns in self.lines.values() for name in names)
+
+    @property
+    def names(self) -> list[str]:
+        """The names of the columns."""
+        return list(next(iter(self.lines.values())))
 
     def extent(self, name: str, along: str = "", within: tuple[float, float] = (-inf, inf)):
         """Return lowest and highest value on lines and points, where ``along`` is ``within``."""
@@ -43,28 +48,48 @@ class Parts(NamedTuple):
         return (float(values.min()), float(values.max())) if values.size else (inf, -inf)
 
 
-def parts_of(result: "Dataset") -> Parts | None:
+def collect_parts(result: "Dataset") -> Parts | None:
     """Return what is drawn of a result; None if there is nothing."""
     if "sweep_height" in result.dims:
-        return _sweep_parts(result) if result.sizes["sweep_height"] else None
+        return _collect_approach_curve(result) if result.sizes["sweep_height"] else None
     if "time" in result.dims and result.sizes["time"] > 1:
-        return _history_parts(result)
-    return None
+        return _collect_history(result)
+    return _curve_parts(result)
 
 
-def _history_parts(result: "Dataset") -> Parts:
+def panels_of(result: "Dataset") -> tuple[tuple[str, str], ...]:
+    """Return for each panel of a result's figure what is drawn against what; () if not known."""
+    mode = MODES.get(str(result.attrs.get("mode")))
+    return () if mode is None else mode.figure.panels
+
+
+def axis_of(name: str) -> tuple[str, str | None]:
+    """Return the title of the axis of a column, and its unit if it takes prefixes."""
+    return approach_data.AXES[name] if name in approach_data.AXES else histories.axis_of(name)
+
+
+def _curve_parts(result: "Dataset") -> Parts | None:
+    """Return the curves over the coordinate of the first panel."""
+    names = dict.fromkeys(name for panel in panels_of(result) for name in panel if name in result)
+    along = result[next(iter(names))].dims if names else ()
+    columns = {name: result[name].values for name in names if result[name].dims == along}
+    return Parts({"curve": columns}, {}, {}) if len(along) == 1 and len(columns) > 1 else None
+
+
+def _collect_history(result: "Dataset") -> Parts:
+    drawn = dict.fromkeys([*histories.AXES, *(n for panel in panels_of(result) for n in panel)])
     columns = {
         name: result[name].values
-        for name in histories.AXES
+        for name in drawn
         if name in result and result[name].dims == ("time",)
     }
-    kept = thinned(columns["time"], list(columns.values()), _MOST_POINTS)
-    time, height = columns["time"], columns[histories.moved(result)][kept]
+    kept = thin(columns["time"], list(columns.values()), _MOST_POINTS)
+    time, height = columns["time"], columns[histories.name_moved(result)][kept]
     strokes: dict[str, list[slice]] = {direction: [] for direction in DIRECTIONS}
-    for samples, falling in histories.strokes(height):
+    for samples, falling in histories.split_strokes(height):
         strokes["approach" if falling else "retract"].append(samples)
     lines = {
-        direction: {name: _apart(values[kept], samples) for name, values in columns.items()}
+        direction: {name: _separate(values[kept], samples) for name, values in columns.items()}
         for direction, samples in strokes.items()
     }
     jumps = result["jump_time"].values
@@ -72,11 +97,11 @@ def _history_parts(result: "Dataset") -> Parts:
     return Parts(lines, {"elastic jump": points} if jumps.size else {}, {})
 
 
-def _sweep_parts(result: "Dataset") -> Parts:
-    curves = approach_data.curves_of(result)
+def _collect_approach_curve(result: "Dataset") -> Parts:
+    curves = approach_data.collect_curves(result)
     lines, jumps = {}, {}
     for direction in DIRECTIONS:
-        swept, pairs = curves[direction], approach_data.jumps_of(result, direction)
+        swept, pairs = curves[direction], approach_data.find_jumps(result, direction)
         cut = [max(pair) for pair in pairs]
         lines[direction] = {name: np.insert(v, cut, np.nan) for name, v in swept.items()}
         before, after = (
@@ -89,13 +114,13 @@ def _sweep_parts(result: "Dataset") -> Parts:
     return Parts(lines, points, jumps)
 
 
-def _apart(values: np.ndarray, samples: Sequence[slice]) -> np.ndarray:
+def _separate(values: np.ndarray, samples: Sequence[slice]) -> np.ndarray:
     """Return stretches of an array one after another, with NaN between them."""
     pieces = [piece for one in samples for piece in (values[one], [np.nan])]
     return np.concatenate(pieces[:-1]) if pieces else np.empty(0)
 
 
-def thinned(time: np.ndarray, columns: Sequence[np.ndarray], most: int) -> np.ndarray:
+def thin(time: np.ndarray, columns: Sequence[np.ndarray], most: int) -> np.ndarray:
     """Return the indices of at most ``most`` samples, and all if there are no more than that.
 
     Straight lines between them in ``time`` miss no column by more of its range than is needed to
@@ -111,13 +136,13 @@ def thinned(time: np.ndarray, columns: Sequence[np.ndarray], most: int) -> np.nd
     while kept.size > most:
         before = kept.size
         for first in (1, 2):
-            kept = _without_straight(time, columns, kept, needed, missed, first)
+            kept = _leave_out_straight(time, columns, kept, needed, missed, first)
         if kept.size > 0.9 * before:
             missed *= 2
     return kept
 
 
-def _without_straight(
+def _leave_out_straight(
     time: np.ndarray,
     columns: Sequence[np.ndarray],
     kept: np.ndarray,

@@ -21,15 +21,16 @@ from bokeh.models import (
 from bokeh.plotting import figure as new_figure
 
 from softafm.app.colours import Theme, in_role, recolour
-from softafm.app.curve_data import AXES, Parts, parts_of
+from softafm.app.curve_data import Parts, axis_of, collect_parts, panels_of
 from softafm.draw import histories
-from softafm.units.quantities import prefixed
+from softafm.modes import MODES
+from softafm.units.quantities import choose_prefix
 
 if TYPE_CHECKING:
     from bokeh.plotting import figure as Figure
     from xarray import Dataset
 
-__all__ = ["Shown", "figures", "recolour"]
+__all__ = ["Shown", "draw_figures", "recolour"]
 
 TABS: dict[str, tuple[str, tuple[str, ...]]] = {
     "Force–distance": ("tip_height", ("force",)),
@@ -40,7 +41,7 @@ TABS: dict[str, tuple[str, tuple[str, ...]]] = {
 }
 """For each tab what is drawn against what, one panel above another."""
 
-_DASHES = {"approach": "solid", "retract": [6, 3]}
+_DASHES = {"approach": "solid", "retract": [6, 3], "curve": "solid"}
 _LEVELS = {"phase": 90.0, **dict.fromkeys(("force", "deflection", "tip_height", "virial"), 0.0)}
 _POINTS: dict[str, dict[str, Any]] = {
     "elastic jump": {"size": 7, "line_width": 1.5},
@@ -73,7 +74,7 @@ class _Drawn(NamedTuple):
     jumps: dict[str, ColumnDataSource]
 
 
-def figures(shown: Sequence[Shown], theme: Theme) -> dict[str, LayoutDOM]:
+def draw_figures(shown: Sequence[Shown], theme: Theme) -> dict[str, LayoutDOM]:
     """Draw runs over each other.
 
     Parameters
@@ -89,30 +90,44 @@ def figures(shown: Sequence[Shown], theme: Theme) -> dict[str, LayoutDOM]:
         For each title of a tab a figure, or a column of them with one abscissa; tabs that none of
         the runs has anything for are left out.
     """
-    found = [(one, parts_of(one.result)) for one in shown]
+    found = [(one, collect_parts(one.result)) for one in shown]
     drawable = [(one, parts) for one, parts in found if parts is not None]
-    units = _units([parts for _, parts in drawable])
-    drawn = [(one.result, _drawn(one, parts, units)) for one, parts in drawable]
+    units = _choose_units([parts for _, parts in drawable])
+    drawn = [(one.result, _scale(one, parts, units)) for one, parts in drawable]
     tabs = {}
-    for title, (abscissa, ordinates) in TABS.items():
+    for title, (abscissa, ordinates) in _tabs([result for result, _ in drawn]).items():
         runs = [(result, run) for result, run in drawn if run.parts.holds(abscissa)]
         if runs:
-            shape = _window([result for result, _ in runs], abscissa)
-            tabs[title] = _tab([run for _, run in runs], abscissa, ordinates, units, shape, theme)
+            shape = _choose_window([result for result, _ in runs], abscissa)
+            tabs[title] = _draw_tab(
+                [run for _, run in runs], abscissa, ordinates, units, shape, theme
+            )
     return tabs
 
 
-def _units(parts: Sequence[Parts]) -> dict[str, tuple[float, str]]:
+def _tabs(results: Sequence["Dataset"]) -> dict[str, tuple[str, tuple[str, ...]]]:
+    """Return the tabs, with those for what the figures of modes show beyond the usual ones."""
+    tabs = dict(TABS)
+    known = {(abscissa, ordinate) for abscissa, several in TABS.values() for ordinate in several}
+    for result in results:
+        for abscissa, ordinate in panels_of(result):
+            if (abscissa, ordinate) not in known and {abscissa, ordinate} <= set(result.variables):
+                tabs[axis_of(ordinate)[0]] = (abscissa, (ordinate,))
+    return tabs
+
+
+def _choose_units(parts: Sequence[Parts]) -> dict[str, tuple[float, str]]:
     """Return for each quantity the factor from SI to the unit of its axis, and the unit."""
     units = {}
-    for name, (_, unit) in AXES.items():
+    for name in dict.fromkeys(name for one in parts for name in one.names):
+        unit = axis_of(name)[1]
         held = [one.extent(name) for one in parts if one.holds(name)]
         largest = max((abs(end) for extent in held for end in extent if abs(end) < inf), default=0)
-        units[name] = (1.0, "") if unit is None else prefixed(largest, unit)
+        units[name] = (1.0, "") if unit is None else choose_prefix(largest, unit)
     return units
 
 
-def _drawn(shown: Shown, parts: Parts, units: dict[str, tuple[float, str]]) -> _Drawn:
+def _scale(shown: Shown, parts: Parts, units: dict[str, tuple[float, str]]) -> _Drawn:
     def scaled(columns: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
         return {name: units[name][0] * values for name, values in columns.items()}
 
@@ -131,15 +146,16 @@ def _drawn(shown: Shown, parts: Parts, units: dict[str, tuple[float, str]]) -> _
     )
 
 
-def _window(results: Sequence["Dataset"], abscissa: str) -> tuple[float, float]:
+def _choose_window(results: Sequence["Dataset"], abscissa: str) -> tuple[float, float]:
     """Return the stretch of the abscissa to begin with, SI: all, or where there is a force."""
-    whole = abscissa not in histories.AXES
-    if whole or any(result.attrs.get("mode") == "force-distance" for result in results):
+    known = [MODES.get(str(result.attrs.get("mode"))) for result in results]
+    whole = any(mode is not None and not mode.figure.cropped for mode in known)
+    if whole or abscissa not in histories.AXES:
         return -inf, inf
-    return histories.felt(results, abscissa)
+    return histories.find_force(results, abscissa)
 
 
-def _tab(
+def _draw_tab(
     runs: Sequence[_Drawn],
     abscissa: str,
     ordinates: Sequence[str],
@@ -149,7 +165,7 @@ def _tab(
 ) -> LayoutDOM:
     low, high = (units[abscissa][0] * end for end in window)
     if low == -inf:
-        low, high = _around([run.parts.extent(abscissa) for run in runs], 0.03)
+        low, high = _widen([run.parts.extent(abscissa) for run in runs], 0.03)
     held = [name for name in ordinates if any(run.parts.holds(name) for run in runs)]
     x_range = Range1d(low, high)
     panels: list[Figure] = []
@@ -158,7 +174,7 @@ def _tab(
         ends = [run.parts.extent(name, abscissa, (low, high)) for run in having]
         panel = new_figure(
             x_range=x_range,
-            y_range=Range1d(*_around(ends, 0.06)),
+            y_range=Range1d(*_widen(ends, 0.06)),
             tools=_TOOLS,
             toolbar_location="right",
             sizing_mode="stretch_both",
@@ -166,7 +182,7 @@ def _tab(
             min_border_left=_LEFT,
         )
         panel.toolbar.logo = None
-        panel.yaxis.axis_label = _label(name, units)
+        panel.yaxis.axis_label = _write_label(name, units)
         panel.axis.axis_label_text_font_style = "normal"
         panel.yaxis.axis_label_text_font_size = "13px" if len(held) < 3 else "10.5px"
         panel.xaxis.major_label_text_font_size = "0pt" if name != held[-1] else "11px"
@@ -174,9 +190,9 @@ def _tab(
         _add_levels(panel, abscissa, name, theme)
         entries = _draw(panel, having, abscissa, name, units, theme)
         if not panels:
-            panel.add_layout(_legend(entries), "above")
+            panel.add_layout(_make_legend(entries), "above")
         panels.append(panel)
-    panels[-1].xaxis.axis_label = _label(abscissa, units)
+    panels[-1].xaxis.axis_label = _write_label(abscissa, units)
     tab: LayoutDOM = panels[0]
     if len(panels) > 1:
         tab = gridplot(
@@ -187,12 +203,12 @@ def _tab(
     return tab
 
 
-def _label(name: str, units: dict[str, tuple[float, str]]) -> str:
-    title, unit = AXES[name][0], units[name][1]
+def _write_label(name: str, units: dict[str, tuple[float, str]]) -> str:
+    title, unit = axis_of(name)[0], units[name][1]
     return f"{title} ({unit})" if unit else title
 
 
-def _around(extents: Sequence[tuple[float, float]], margin: float) -> tuple[float, float]:
+def _widen(extents: Sequence[tuple[float, float]], margin: float) -> tuple[float, float]:
     """Return the range of several, and a part more on both sides."""
     low, high = min(low for low, _ in extents), max(high for _, high in extents)
     if low > high:
@@ -247,13 +263,13 @@ def _draw(
             of_run += drawn
         _add_arrows(panel, run, x, y)
         by_run.append((run.label, of_run))
-    panel.add_tools(_hover(felt, x, y, units))
+    panel.add_tools(_make_hover(felt, x, y, units))
     if len(runs) == 1:
         return list(strokes.items())
-    return by_run + list(_neutral_entries(panel, list(strokes), theme))
+    return by_run + list(_make_neutral_entries(panel, list(strokes), theme))
 
 
-def _neutral_entries(
+def _make_neutral_entries(
     panel: "Figure", kinds: Sequence[str], theme: Theme
 ) -> Iterator[tuple[str, list[GlyphRenderer]]]:
     """Yield legend entries of strokes and points for all runs."""
@@ -284,13 +300,13 @@ def _add_arrows(panel: "Figure", run: _Drawn, x: str, y: str) -> None:
         )
 
 
-def _hover(
+def _make_hover(
     renderers: list[GlyphRenderer], x: str, y: str, units: dict[str, tuple[float, str]]
 ) -> HoverTool:
     """Show the run and, in their units, what is drawn and when it was."""
     columns = set.intersection(*(set(renderer.data_source.data) for renderer in renderers))
     names = dict.fromkeys([x, y, *({"time"} & columns)])
-    tips = [(AXES[name][0], f"@{name}{{%.4g}} {units[name][1]}".strip()) for name in names]
+    tips = [(axis_of(name)[0], f"@{name}{{%.4g}} {units[name][1]}".strip()) for name in names]
     return HoverTool(
         renderers=renderers,
         tooltips=[("Run", "$name"), *tips],
@@ -301,7 +317,7 @@ def _hover(
     )
 
 
-def _legend(entries: list[tuple[str, list[GlyphRenderer]]]) -> Legend:
+def _make_legend(entries: list[tuple[str, list[GlyphRenderer]]]) -> Legend:
     return Legend(
         items=[LegendItem(label={"value": name}, renderers=drawn) for name, drawn in entries],
         orientation="horizontal",

@@ -6,13 +6,12 @@ from functools import cache
 from inspect import Parameter, signature
 from typing import Any, get_args
 
-from softafm.app.help_texts import help_of, summary_of
+from softafm.app.help_texts import find_help, find_summary
 from softafm.experiment import schema
 from softafm.experiment.config import document_from, example_names, example_text
 from softafm.experiment.entries import Input
-from softafm.units.quantities import prefixed
-
-MODES = tuple(schema.MOTIONS)
+from softafm.modes import MODES
+from softafm.units.quantities import choose_prefix
 
 _SYMBOLS = {
     "E0": "E₀", "E1": "E₁", "E_inf": "E∞", "G0": "G₀", "G_inf": "G∞", "z0": "z₀",
@@ -23,8 +22,8 @@ _SYMBOLS = {
 _TYPICAL = "ldpe-tapping"
 """The bundled experiment from which examples are taken first."""
 
-_WITH_DEFAULT = ("cantilever", "motion", "solver", "run")
-"""Tables that need not say what they choose, which then is the first."""
+_WITHOUT_DEFAULT = ("tip", "sample", "surface", "surface.parts")
+"""Tables that must say what they choose; the others stand for the first choice if they do not."""
 
 
 @dataclass(frozen=True)
@@ -92,7 +91,7 @@ class Section:
         return found
 
 
-def presets() -> dict[str, dict[str, Any]]:
+def read_presets() -> dict[str, dict[str, Any]]:
     """Return the bundled experiments by name, as documents of their own without empty tables."""
     files = {name: document_from(example_text(name), name) for name in example_names()}
     return {
@@ -102,41 +101,49 @@ def presets() -> dict[str, dict[str, Any]]:
 
 
 @cache
-def preset_titles() -> dict[str, str]:
+def read_preset_titles() -> dict[str, str]:
     """Return what each bundled experiment is about, by name."""
     return {name: example_text(name).partition("\n")[0].lstrip("# ") for name in example_names()}
 
 
-def tables(mode: object) -> tuple[str, ...]:
+def list_tables(mode: object) -> tuple[str, ...]:
     """Return the tables that a mode has, in the order of the form and of a file."""
-    lever = ("cantilever",) if str(mode) in schema.CANTILEVERS else ()
-    return ("tip", "sample", "surface", *lever, "motion", "solver", "run")
+    known = MODES.get(str(mode))
+    lever = ("cantilever",) if known is not None and known.lever else ()
+    further = () if known is None else tuple(known.tables)
+    return ("tip", "sample", "surface", *lever, "motion", *further, "solver", "run")
 
 
-def section(table: str, choice: object, mode: object) -> Section:
+def describe_section(table: str, choice: object, mode: object) -> Section:
     """Return what the form asks for a table in a mode.
 
     ``choice`` is what the document says, None if nothing. ``table`` may be ``"surface.parts"``, one
     of a sum. A mode that does not exist has no motion to choose.
     """
-    chooser, choices = _choices(table, mode)
-    default = next(iter(choices), "") if table in _WITH_DEFAULT else ""
+    chooser, choices = _find_choices(table, mode)
+    default = next(iter(choices), "") if table not in _WITHOUT_DEFAULT else ""
     chosen = default if choice is None else choice
     if not isinstance(chosen, str) or chosen not in choices:
         return Section(table, chooser, tuple(choices), "", default)
     made = choices[chosen]
-    text = summary_of(made) if chooser else ""
-    return Section(table, chooser, tuple(choices), chosen, default, text, _entries(table, made))
+    text = find_summary(made) if chooser else ""
+    return Section(
+        table, chooser, tuple(choices), chosen, default, text, _describe_entries(table, made)
+    )
 
 
-def _choices(table: str, mode: object) -> tuple[str, Mapping[str, type[schema.Table]]]:
+def _find_choices(table: str, mode: object) -> tuple[str, Mapping[str, type[schema.Table]]]:
     """Return the key of a table that chooses, "" if none does, and what there is to choose."""
     if table == "run":
         return "", {"": schema.Run}
     if table == "cantilever":
-        return "", {"": schema.CANTILEVERS[str(mode)]}
+        made = schema.cantilever_of(MODES[str(mode)])
+        return "", {} if made is None else {"": made}
+    known = MODES.get(str(mode))
+    if known is not None and table in known.tables:
+        return "", {"": schema.table_of(known.tables[table])}
     if table == "motion":
-        return "shape", schema.MOTIONS.get(str(mode), {})
+        return "shape", {} if known is None else schema.motions_of(known)
     chooser, choices = schema.CHOICES[table.partition(".")[0]]
     if table == "surface.parts":
         choices = {name: law for name, law in choices.items() if law is not schema.SumSurface}
@@ -144,21 +151,21 @@ def _choices(table: str, mode: object) -> tuple[str, Mapping[str, type[schema.Ta
 
 
 @cache
-def _entries(table: str, made: type[schema.Table]) -> tuple[Field | Alternatives, ...]:
+def _describe_entries(table: str, made: type[schema.Table]) -> tuple[Field | Alternatives, ...]:
     alternatives_of = {key: ways for ways in made.alternatives for way in ways for key in way}
     entries: list[Field | Alternatives] = []
     seen: set[Any] = set()
     for key in made.model_fields:
         ways = alternatives_of.get(key)
         if ways is None:
-            entries.append(_field(table, made, key))
+            entries.append(_describe_field(table, made, key))
         elif ways not in seen:
             seen.add(ways)
-            entries.append(_alternatives(table, made, ways))
+            entries.append(_describe_alternatives(table, made, ways))
     return tuple(entries)
 
 
-def _alternatives(
+def _describe_alternatives(
     table: str, made: type[schema.Table], ways: tuple[tuple[str, ...], ...]
 ) -> Alternatives:
     # A thing's alternatives are its constructors, one a way, which may mean different things by
@@ -166,30 +173,32 @@ def _alternatives(
     makers = made.constructors if issubclass(made, schema.Thing) else (None,) * len(ways)
     pairs = zip(ways, makers, strict=True)
     return Alternatives(
-        tuple(tuple(_field(table, made, key, maker) for key in way) for way, maker in pairs)
+        tuple(
+            tuple(_describe_field(table, made, key, maker) for key in way) for way, maker in pairs
+        )
     )
 
 
-def _field(
+def _describe_field(
     table: str, made: type[schema.Table], key: str, constructor: Callable | None = None
 ) -> Field:
-    asked = _input(made, key)
+    asked = _find_input(made, key)
     required = constructor is not None or made.model_fields[key].is_required()
     required = required or any(key in way for ways in made.alternatives for way in ways)
     return Field(
         name=key,
         label=_SYMBOLS.get(key, key.replace("_", " ")),
         kind=asked.kind,
-        example=_seen_in_presets().get((table, key), asked.example),
-        help=help_of(made, key, constructor),
+        example=_collect_examples().get((table, key), asked.example),
+        help=find_help(made, key, constructor),
         required=required,
-        default="" if required else _as_text(_default(made, key), asked),
+        default="" if required else _write_default(_find_default(made, key), asked),
         choices=asked.choices,
         unit=asked.unit,
     )
 
 
-def _input(made: type[schema.Table], key: str) -> Input:
+def _find_input(made: type[schema.Table], key: str) -> Input:
     """Return how a key is written: what its type, or the optional one of it, carries."""
     info = made.model_fields[key]
     marks = list(info.metadata)
@@ -198,7 +207,7 @@ def _input(made: type[schema.Table], key: str) -> Input:
     return next(mark for mark in marks if isinstance(mark, Input))
 
 
-def _default(made: type[schema.Table], key: str) -> Any:
+def _find_default(made: type[schema.Table], key: str) -> Any:
     """Return the value that counts for a key that is left out, None if there is none."""
     if issubclass(made, schema.Solver):
         return getattr(made.solver(), key)
@@ -210,7 +219,7 @@ def _default(made: type[schema.Table], key: str) -> Any:
     return made.model_fields[key].default
 
 
-def _as_text(value: Any, asked: Input) -> str:
+def _write_default(value: Any, asked: Input) -> str:
     """Return a default as a user would write it; "" for None."""
     if value is None:
         return ""
@@ -220,16 +229,16 @@ def _as_text(value: Any, asked: Input) -> str:
         written = {choice: made for choice, made in schema.STEPPERS.items() if made == value}
         return next(iter(written), str(value))
     if asked.unit:
-        factor, unit = prefixed(abs(value), asked.unit)
+        factor, unit = choose_prefix(abs(value), asked.unit)
         return f"{value * factor:.6g} {unit}"
     return f"{value:g}" if isinstance(value, float) else str(value)
 
 
 @cache
-def _seen_in_presets() -> dict[tuple[str, str], str]:
+def _collect_examples() -> dict[tuple[str, str], str]:
     """Return by table and key how a bundled experiment writes a value: the best of examples."""
     seen: dict[tuple[str, str], str] = {}
-    typical_first = sorted(presets().items(), key=lambda preset: preset[0] != _TYPICAL)
+    typical_first = sorted(read_presets().items(), key=lambda preset: preset[0] != _TYPICAL)
     for _, document in typical_first:
         for table, written in document.items():
             if isinstance(written, dict):

@@ -48,52 +48,54 @@ _PARAMETER = {"work_of_adhesion": "W", "file": "path"}
 """What a key is called where it is not called as in the table."""
 
 
-def summary_of(table: type[schema.Table]) -> str:
+def find_summary(table: type[schema.Table]) -> str:
     """Return in one sentence what a table describes."""
-    return _plain(_text(_documented(table)[0]).partition("\n\n")[0])
+    return _strip_marks(_read_docstring(_find_documented(table)[0]).partition("\n\n")[0])
 
 
-def help_of(table: type[schema.Table], key: str, constructor: Callable | None = None) -> str:
+def find_help(table: type[schema.Table], key: str, constructor: Callable | None = None) -> str:
     """Return what a key of a table means, with its SI unit and bounds; "" if nothing tells.
 
     ``constructor`` is the one of the table's that is to be called, if it matters.
     """
     first = (constructor,) if constructor else ()
-    for documented in (*first, *_documented(table)):
-        parameters = _parameters(documented)
+    for documented in (*first, *_find_documented(table)):
+        parameters = _read_parameters(documented)
         for name in (key, _PARAMETER.get(key, key)):
             if name in parameters:
                 return parameters[name]
     return ""
 
 
-def _documented(table: type[schema.Table]) -> tuple[Callable, ...]:
+def _find_documented(table: type[schema.Table]) -> tuple[Callable, ...]:
     """Return what builds a table's object, and so tells what its keys mean."""
     if table in _STANDS_FOR:
         return _STANDS_FOR[table]
     if issubclass(table, schema.Solver):
         return (table.solver,)
+    if issubclass(table, schema.FieldsTable):
+        return (table.made,)
     if issubclass(table, schema.Thing):
         made = (_STANDS_FOR.get(make, (make,)) for make in table.constructors)
         return tuple(documented for several in made for documented in several)
     return (table,)
 
 
-def _text(documented: Any) -> str:
+def _read_docstring(documented: Any) -> str:
     return inspect.getdoc(documented) or ""
 
 
 @cache
-def _parameters(documented: Any) -> dict[str, str]:
+def _read_parameters(documented: Any) -> dict[str, str]:
     """Return the texts of a docstring's section ``Parameters`` by name."""
-    _, heading, section = _text(documented).partition("Parameters\n----------\n")
+    _, heading, section = _read_docstring(documented).partition("Parameters\n----------\n")
     section = re.split(r"\n\n\w[\w ]*\n-+\n", section)[0] if heading else ""
     found = {}
     for names, words in re.findall(r"^(\w[\w, ]*)\n((?:(?: .*)?(?:\n|$))+)", section, re.MULTILINE):
-        found.update(dict.fromkeys(names.split(", "), _plain(words)))
+        found.update(dict.fromkeys(names.split(", "), _strip_marks(words)))
     return found
 
 
-def _plain(text: str) -> str:
+def _strip_marks(text: str) -> str:
     """Return text in one line, without marks for code and emphasis."""
     return re.sub(r"``|(?<!\w)\*(\w[^*]*)\*(?!\w)", r"\1", " ".join(text.split()))

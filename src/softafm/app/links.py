@@ -14,7 +14,7 @@ _MOST_VALUES = 200
 _BARE = re.compile(r"[A-Za-z0-9_-]+")
 
 
-def to_query(document: Mapping[str, Any]) -> str:
+def write_query(document: Mapping[str, Any]) -> str:
     """Return a document as the query of a link, without the question mark.
 
     Text stands for itself; what is not text, or would be read as a number, is written as in TOML.
@@ -24,7 +24,7 @@ def to_query(document: Mapping[str, Any]) -> str:
     ConfigError
         If it is too long for a link.
     """
-    query = urlencode(list(_pairs(document)), safe="/:,")
+    query = urlencode(list(_list_pairs(document)), safe="/:,")
     if len(query) > LONGEST:
         raise ConfigError(
             [f"the link would have {len(query)} characters, at most {LONGEST}: use the TOML file"]
@@ -32,13 +32,14 @@ def to_query(document: Mapping[str, Any]) -> str:
     return query
 
 
-def from_query(query: str) -> dict[str, Any]:
+def read_query(query: str) -> dict[str, Any]:
     """Return the document of a link's query.
 
     Raises
     ------
     ConfigError
-        If it is too long or not one that ``to_query`` writes; what the values mean is not checked.
+        If it is too long or ``write_query`` does not write such; what the values mean is not
+        checked.
     """
     if len(query) > LONGEST:
         raise ConfigError([f"the link has {len(query)} characters, at most {LONGEST}"])
@@ -61,34 +62,34 @@ def from_query(query: str) -> dict[str, Any]:
     return document
 
 
-def _pairs(document: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
+def _list_pairs(document: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
     for name, value in document.items():
         if isinstance(value, Mapping) and value and all(map(_BARE.fullmatch, value)):
             for key, inner in value.items():
-                yield f"{name}.{key}", _written(inner)
+                yield f"{name}.{key}", _write_value(inner)
         else:
-            yield name, _written(value)
+            yield name, _write_value(value)
 
 
-def _written(value: Any) -> str:
+def _write_value(value: Any) -> str:
     """Return text as it is where it is read back as such, and anything else as in TOML."""
     if isinstance(value, str) and value == value.strip() and value_of(value) == value:
         return value
-    return _in_toml(value)
+    return _write_toml(value)
 
 
-def _in_toml(value: Any) -> str:
+def _write_toml(value: Any) -> str:
     if isinstance(value, Mapping):
-        entries = (f"{_quoted(key)}={_in_toml(inner)}" for key, inner in value.items())
+        entries = (f"{_quote(key)}={_write_toml(inner)}" for key, inner in value.items())
         return "{" + ",".join(entries) + "}"
     if isinstance(value, list | tuple):
-        return "[" + ",".join(map(_in_toml, value)) + "]"
+        return "[" + ",".join(map(_write_toml, value)) + "]"
     if isinstance(value, bool):
         return "true" if value else "false"
-    return _quoted(value, bare=False) if isinstance(value, str) else str(value)
+    return _quote(value, bare=False) if isinstance(value, str) else str(value)
 
 
-def _quoted(text: str, bare: bool = True) -> str:
+def _quote(text: str, bare: bool = True) -> str:
     if bare and _BARE.fullmatch(text):
         return text
     return dumps(text, ensure_ascii=False).replace("\x7f", "\\u007f")

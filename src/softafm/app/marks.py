@@ -4,14 +4,14 @@ import re
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from softafm.app.documents import value_at
+from softafm.app.documents import find_value
 from softafm.app.plan import Shown
 
 MISSING = "missing"
 _ENTRY = re.compile(r"(.*)\[(\d+)\]")
 
 
-def with_missing(
+def add_missing(
     problems: Mapping[str, str], shown: Sequence[Shown], document: Mapping[str, Any]
 ) -> dict[str, str]:
     """Return the problems, of which each empty field that must be given is one.
@@ -22,7 +22,7 @@ def with_missing(
         (one.path, f"{one.path}.{field.name}")
         for one in shown
         for field in one.fields.values()
-        if field.required and value_at(document, f"{one.path}.{field.name}") is None
+        if field.required and find_value(document, f"{one.path}.{field.name}") is None
     ]
     if not problems:
         return {}
@@ -35,7 +35,7 @@ def with_missing(
     return {path: MISSING for _, path in empty} | kept
 
 
-def placed(
+def place(
     problems: Mapping[str, str], shown: Sequence[Shown]
 ) -> tuple[dict[str, str], list[tuple[str, str]]]:
     """Part problems into those of a field or section of the form, and others with their paths.

@@ -22,7 +22,7 @@ from bokeh.models import (
 from bokeh.plotting import figure as new_figure
 
 from softafm.app.colours import Theme, in_role, recolour
-from softafm.app.movie_data import CURVES, Movie, movie_of
+from softafm.app.movie_data import CURVES, Movie, make_movie
 from softafm.draw.scenes import require_shapes
 
 if TYPE_CHECKING:
@@ -36,7 +36,7 @@ _SPEEDS = {"0.1": "×0.1", "0.25": "×0.25", "0.5": "×0.5", "1": "×1", "2": "�
 _LEFT = 70
 
 
-def movie(result: "Dataset", theme: Theme) -> LayoutDOM | None:
+def make_player(result: "Dataset", theme: Theme) -> LayoutDOM | None:
     """Return a player of tip and surface while force acts and the surface returns.
 
     It counts the frames it draws in the browser's ``window.softafm_movie_frames``.
@@ -57,20 +57,20 @@ def movie(result: "Dataset", theme: Theme) -> LayoutDOM | None:
         require_shapes(result)
     except ValueError:
         return None
-    shown = movie_of(result, FRAMES)
+    shown = make_movie(result, FRAMES)
     moving: dict[str, Any] = {
-        "tip": _source(x=shown.x, y=shown.outline(shown.rise + shown.apex[0], shown.ends[1])),
-        "sample": _source(x=shown.x, y=shown.outline(shown.surface[0], shown.ends[0])),
-        "past": _source(**{name: shown.frames[name][:1] for name in CURVES}),
-        "now": _source(**{name: shown.frames[name][:1] for name in CURVES}),
+        "tip": _make_source(x=shown.x, y=shown.outline(shown.rise + shown.apex[0], shown.ends[1])),
+        "sample": _make_source(x=shown.x, y=shown.outline(shown.surface[0], shown.ends[0])),
+        "past": _make_source(**{name: shown.frames[name][:1] for name in CURVES}),
+        "now": _make_source(**{name: shown.frames[name][:1] for name in CURVES}),
         "reading": Label(x=12, y=10, x_units="screen", y_units="screen"),
-        "slider": _slider(shown.moments),
+        "slider": _make_slider(shown.moments),
     }
     readings = [f"{t}   {f}" for t, f in zip(shown.moments, shown.strengths, strict=True)]
     moving["reading"].text = readings[0]
-    stage = _stage(shown, moving, theme)
-    curve = _source(**shown.curve)
-    graphs = [_graph(shown, curve, moving, abscissa, theme) for abscissa in ("time", "height")]
+    stage = _draw_stage(shown, moving, theme)
+    curve = _make_source(**shown.curve)
+    graphs = [_draw_graph(shown, curve, moving, abscissa, theme) for abscissa in ("time", "height")]
     button = Button(label="▶", width=48)
     speed = Select(value="1", options=list(_SPEEDS.items()), width=76)
     player = CustomJS(
@@ -79,9 +79,9 @@ def movie(result: "Dataset", theme: Theme) -> LayoutDOM | None:
             "stage": stage,
             "button": button,
             "speed": speed,
-            "frames": _source(**shown.frames, apex=shown.apex),
-            "rise": _source(rise=shown.rise),
-            "surface": _source(surface=shown.surface.ravel()),
+            "frames": _make_source(**shown.frames, apex=shown.apex),
+            "rise": _make_source(rise=shown.rise),
+            "surface": _make_source(surface=shown.surface.ravel()),
             "curve": curve,
             "readings": readings,
             "quantum": shown.quantum,
@@ -107,11 +107,11 @@ def movie(result: "Dataset", theme: Theme) -> LayoutDOM | None:
     return layout
 
 
-def _source(**columns: Any) -> ColumnDataSource:
+def _make_source(**columns: Any) -> ColumnDataSource:
     return ColumnDataSource(columns)
 
 
-def _slider(moments: list[str]) -> Slider:
+def _make_slider(moments: list[str]) -> Slider:
     written = CustomJSTickFormatter(args={"moments": moments}, code="return moments[tick]")
     return Slider(
         start=0,
@@ -124,7 +124,7 @@ def _slider(moments: list[str]) -> Slider:
     )
 
 
-def _stage(shown: Movie, moving: dict[str, Any], theme: Theme) -> "Figure":
+def _draw_stage(shown: Movie, moving: dict[str, Any], theme: Theme) -> "Figure":
     """Draw tip and sample."""
     stage = new_figure(
         x_range=Range1d(-shown.view["half_width"], shown.view["half_width"]),
@@ -142,10 +142,10 @@ def _stage(shown: Movie, moving: dict[str, Any], theme: Theme) -> "Figure":
     stage.add_layout(in_role(moving["reading"], theme, text_color="text"))
     stage.xaxis.axis_label, stage.yaxis.axis_label = shown.titles
     stage.grid.visible = False
-    return _plain(stage)
+    return _strip_tools(stage)
 
 
-def _graph(
+def _draw_graph(
     shown: Movie, curve: ColumnDataSource, moving: dict[str, Any], abscissa: str, theme: Theme
 ) -> "Figure":
     """Draw the force curve, what of it is past, and the marker."""
@@ -168,10 +168,10 @@ def _graph(
     if abscissa == "time":
         graph.yaxis.axis_label = shown.labels["force"]
     graph.yaxis.ticker.desired_num_ticks = 4
-    return _plain(graph)
+    return _strip_tools(graph)
 
 
-def _plain(figure: "Figure") -> "Figure":
+def _strip_tools(figure: "Figure") -> "Figure":
     figure.toolbar.logo = None
     figure.axis.axis_label_text_font_style = "normal"
     figure.axis.axis_label_text_font_size = "12px"

@@ -5,11 +5,11 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from softafm.app.curve_data import thinned
-from softafm.draw.histories import AXES, felt
-from softafm.draw.scene_parts import scales, titles, writers
-from softafm.draw.scenes import Scenes, View, scenes_at, view_of, window
-from softafm.units.quantities import prefixed
+from softafm.app.curve_data import thin
+from softafm.draw.histories import AXES, find_force
+from softafm.draw.scene_parts import choose_scales, make_writers, write_titles
+from softafm.draw.scenes import Scenes, View, choose_view, choose_window, interpolate_scenes
+from softafm.units.quantities import choose_prefix
 
 if TYPE_CHECKING:
     from xarray import Dataset
@@ -64,24 +64,24 @@ class Movie(NamedTuple):
         return np.concatenate([heights, [end, end]])
 
 
-def movie_of(result: "Dataset", frames: int) -> Movie:
+def make_movie(result: "Dataset", frames: int) -> Movie:
     """Return the movie of a result that holds shapes, while force acts and the surface returns."""
-    start, stop = window(result)
-    scenes = scenes_at(result, np.linspace(start, stop, frames))
-    view = view_of(result, start, stop, _SHAPE)
-    in_radius, in_height = scales(view)
+    start, stop = choose_window(result)
+    scenes = interpolate_scenes(result, np.linspace(start, stop, frames))
+    view = choose_view(result, start, stop, _SHAPE)
+    in_radius, in_height = choose_scales(view)
     seen = np.flatnonzero(scenes.r <= _REACH * view.half_width)
     seen = np.union1d(seen[:: ceil(seen.size / _RADII)], seen[-1:])
     radii = in_radius * scenes.r[seen]
     size = view.top - view.bottom
     ends = view.bottom - _BEYOND * size, view.top + _BEYOND * size
-    at_frames, curve, labels, near = _curves(result, start, stop, scenes)
-    moment, strength = writers(scenes)
+    at_frames, curve, labels, near = _collect_curves(result, start, stop, scenes)
+    moment, strength = make_writers(scenes)
     return Movie(
         x=np.concatenate([-radii[::-1], radii, [radii[-1], -radii[-1]]]),
-        rise=_whole(scenes.tip[0, seen] - scenes.tip[0, 0], view),
-        apex=_whole(scenes.tip[:, 0], view),
-        surface=_whole(scenes.surface[:, seen], view),
+        rise=_round_heights(scenes.tip[0, seen] - scenes.tip[0, 0], view),
+        apex=_round_heights(scenes.tip[:, 0], view),
+        surface=_round_heights(scenes.surface[:, seen], view),
         quantum=in_height * _QUANTUM * size,
         ends=(in_height * ends[0], in_height * ends[1]),
         view={
@@ -90,7 +90,7 @@ def movie_of(result: "Dataset", frames: int) -> Movie:
             "top": in_height * view.top,
             "stretch": view.stretch * in_radius / in_height,
         },
-        titles=titles(view),
+        titles=write_titles(view),
         frames=at_frames,
         curve=curve,
         labels=labels,
@@ -100,27 +100,27 @@ def movie_of(result: "Dataset", frames: int) -> Movie:
     )
 
 
-def _whole(heights: np.ndarray, view: View) -> np.ndarray:
+def _round_heights(heights: np.ndarray, view: View) -> np.ndarray:
     quanta = np.round(heights / (_QUANTUM * (view.top - view.bottom)))
     return np.clip(quanta, -_FARTHEST, _FARTHEST).astype(np.int16)
 
 
-def _curves(result: "Dataset", start: float, stop: float, scenes: Scenes):
+def _collect_curves(result: "Dataset", start: float, stop: float, scenes: Scenes):
     """Return ``CURVES`` at the frames and at the steps of a run, labels, and where force acts."""
     run = {name: result[variable].values for name, variable in CURVES.items()}
     inside = np.flatnonzero((run["time"] > start) & (run["time"] < stop))
     seen = [run[name][inside] for name in ("force", "height")]
-    inside = inside[thinned(run["time"][inside], seen, _CURVE_POINTS)]
+    inside = inside[thin(run["time"][inside], seen, _CURVE_POINTS)]
     above = scenes.tip[0, 0] - np.interp(scenes.time[0], run["time"], run["height"])
     frames = {"time": scenes.time, "height": scenes.tip[:, 0] - above, "force": scenes.force}
     curve = {
         name: np.concatenate([frames[name][:1], values[inside], frames[name][-1:]])
         for name, values in run.items()
     }
-    labels, near = {}, felt([result], CURVES["height"])
+    labels, near = {}, find_force([result], CURVES["height"])
     for name, variable in CURVES.items():
         title, unit = AXES[variable]
-        factor, unit = prefixed(float(np.abs(frames[name]).max()), unit)
+        factor, unit = choose_prefix(float(np.abs(frames[name]).max()), unit)
         curve[name], frames[name] = factor * curve[name], factor * frames[name]
         labels[name] = f"{title} ({unit})"
         if name == "height":

@@ -21,7 +21,7 @@ def load_panel() -> None:
 
 
 @cache
-def shared_runner(limits: Limits) -> Runner:
+def share_runner(limits: Limits) -> Runner:
     """Return the runner of all pages of this Python process with such limits, started."""
     runner = Runner(limits.processes, limits.waiting, limits.run_seconds, limits.kept_bytes)
     runner.start()

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from softafm.app.files import refuse_paths
-from softafm.app.form import tables
+from softafm.app.form import list_tables
 from softafm.checks.refusals import ConfigError, shown
 from softafm.experiment.config import experiment_from
 from softafm.experiment.regime import Row, expected_seconds, rows
@@ -31,47 +31,47 @@ class Outlook:
     seconds: float | None = None
 
 
-def outlook(document: Mapping[str, Any], folder: Path) -> Outlook:
+def foresee(document: Mapping[str, Any], folder: Path) -> Outlook:
     """Return what is wrong with a document, or its regime; its files are sought in ``folder``."""
-    needed = [name for name in tables(document.get("mode")) if name not in _OPTIONAL]
+    needed = [name for name in list_tables(document.get("mode")) if name not in _OPTIONAL]
     whole = {**dict(document), **{name: {} for name in needed if name not in document}}
     try:
         refuse_paths(whole)
         experiment = experiment_from(whole, folder)
     except ConfigError as error:
-        return Outlook(problems=_by_path(str(error).splitlines(), whole))
+        return Outlook(problems=_sort_by_path(str(error).splitlines(), whole))
     try:
         return Outlook({}, tuple(rows(experiment)), expected_seconds(experiment))
     except (ValueError, ArithmeticError, RuntimeError) as error:
         return Outlook(problems={"mode": f"cannot be foreseen: {error}"})
 
 
-def problems(document: Mapping[str, Any], folder: Path) -> dict[str, str]:
+def find_problems(document: Mapping[str, Any], folder: Path) -> dict[str, str]:
     """Return why a document cannot run: reasons by path, such as ``"sample.E0"``; {} if it can."""
-    return outlook(document, folder).problems
+    return foresee(document, folder).problems
 
 
-def summary(document: Mapping[str, Any], folder: Path) -> tuple[Row, ...]:
+def summarise(document: Mapping[str, Any], folder: Path) -> tuple[Row, ...]:
     """Return the rows of ``softafm info``; () if the document cannot run."""
-    return outlook(document, folder).rows
+    return foresee(document, folder).rows
 
 
-def cost(document: Mapping[str, Any], folder: Path) -> float | None:
+def estimate_cost(document: Mapping[str, Any], folder: Path) -> float | None:
     """Return the order of magnitude of a run, s on one core; None if the document cannot run."""
-    return outlook(document, folder).seconds
+    return foresee(document, folder).seconds
 
 
-def _by_path(lines: list[str], document: Mapping[str, Any]) -> dict[str, str]:
+def _sort_by_path(lines: list[str], document: Mapping[str, Any]) -> dict[str, str]:
     """Part the lines of a ConfigError, ``path = value: reason`` or ``path: reason``."""
-    places = sorted(_places(document, ""), key=lambda place: -len(place[0]))
+    places = sorted(_list_places(document, ""), key=lambda place: -len(place[0]))
     found: dict[str, str] = {}
     for line in lines:
-        path, reason = _parted(line, places)
+        path, reason = _part_line(line, places)
         found.setdefault(path, reason)
     return found
 
 
-def _parted(line: str, places: list[tuple[str, Any]]) -> tuple[str, str]:
+def _part_line(line: str, places: list[tuple[str, Any]]) -> tuple[str, str]:
     for path, value in places:
         for start in (f"{path} = {shown(value)}: ", f"{path[:_LONGEST_PATH]}: "):
             # A ConfigError escapes what cannot be printed, and so must be compared with one.
@@ -82,14 +82,14 @@ def _parted(line: str, places: list[tuple[str, Any]]) -> tuple[str, str]:
     return (match[1], match[2]) if match else ("mode", line)
 
 
-def _places(thing: Any, path: str) -> Iterator[tuple[str, Any]]:
+def _list_places(thing: Any, path: str) -> Iterator[tuple[str, Any]]:
     """Yield everything in a document with its path."""
     if isinstance(thing, dict):
         for key, value in thing.items():
             inner = f"{path}.{key}" if path else str(key)
             yield inner, value
-            yield from _places(value, inner)
+            yield from _list_places(value, inner)
     elif isinstance(thing, list):
         for index, value in enumerate(thing):
             yield f"{path}[{index}]", value
-            yield from _places(value, f"{path}[{index}]")
+            yield from _list_places(value, f"{path}[{index}]")

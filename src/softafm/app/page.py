@@ -13,19 +13,20 @@ import panel as pn
 import param
 
 from softafm.app.colours import Theme, recolour
-from softafm.app.documents import with_value
-from softafm.app.form import presets
+from softafm.app.documents import replace_value
+from softafm.app.form import read_presets
 from softafm.app.limits import Limits
-from softafm.app.links import from_query, to_query
-from softafm.app.notebook import FRAME, load_panel, shared_runner
+from softafm.app.links import read_query, write_query
+from softafm.app.notebook import FRAME, load_panel, share_runner
 from softafm.app.readings import Reading, read_document
-from softafm.app.rows import about, row_of
+from softafm.app.rows import describe_time, make_row
 from softafm.app.runs import Runner
 from softafm.app.session import Entry, Session, refuse_large
-from softafm.app.tables import regime_table
-from softafm.app.views import views
+from softafm.app.tables import make_regime_table
+from softafm.app.views import make_views
 from softafm.app.widgets import Form
 from softafm.checks.refusals import ConfigError
+from softafm.modes import MODES
 
 FIRST = "ldpe-tapping"
 _REGIME = "Regime"
@@ -34,7 +35,7 @@ _BETWEEN_LOOKS = 150
 """Time between two looks at runs that go on, ms."""
 
 
-def resource(name: str) -> str:
+def read_resource(name: str) -> str:
     """Return a text file of this package."""
     return (resources.files("softafm.app") / name).read_text(encoding="utf-8")
 
@@ -44,8 +45,8 @@ class Piece(pn.custom.JSComponent):
 
     part = param.String()
     state = param.Dict(default={})
-    _esm = resource("page.js")
-    _stylesheets = (resource("page.css"),)
+    _esm = read_resource("page.js")
+    _stylesheets = (read_resource("page.css"),)
 
     def __init__(self, answer, **params):
         super().__init__(**params)
@@ -69,7 +70,7 @@ class Page(pn.viewable.Viewer):
     def __init__(self, runner: Runner | None = None, limits: Limits | None = None, **params):
         super().__init__(**params)
         self.limits = limits or Limits()
-        runner = runner or shared_runner(self.limits)
+        runner = runner or share_runner(self.limits)
         self._served = pn.state.curdoc is not None
         self._displayed = False
         self.theme: Theme = "light"
@@ -77,7 +78,7 @@ class Page(pn.viewable.Viewer):
         self._drawn: Any = None
         self._file: tuple[str, Reading, Callable[[Any], None]] | None = None
         self._looking: Any = None
-        self.form = Form(presets()[FIRST], largest_upload=self.limits.upload_bytes // 4)
+        self.form = Form(read_presets()[FIRST], largest_upload=self.limits.upload_bytes // 4)
         self.session = Session(runner, self.form.folder, self.limits)
         self._header = Piece(self.answer, part="header", sizing_mode="stretch_width")
         self._header.state = {"largest": self.limits.upload_bytes}
@@ -88,9 +89,9 @@ class Page(pn.viewable.Viewer):
             (_REGIME, pn.Column(self._regime, scroll=True, sizing_mode="stretch_both")),
             dynamic=True,
             sizing_mode="stretch_both",
-            stylesheets=[resource("tabs.css")],
+            stylesheets=[read_resource("tabs.css")],
         )
-        self._layout = self._laid_out()
+        self._layout = self._lay_out()
         self.form.param.watch(self._follow_form, ["document", "outlook"])
         query = "" if self._location is None else self._location.search
         self._follow_form()
@@ -138,7 +139,7 @@ class Page(pn.viewable.Viewer):
             return None
         document = self.form.document
         if self._movie and self._can_film:
-            document = with_value(document, "run.profiles", True)
+            document = replace_value(document, "run.profiles", True)
         entry = self._try(
             lambda: self.session.run(document, self._name(), self.form.outlook.seconds)
         )
@@ -160,10 +161,11 @@ class Page(pn.viewable.Viewer):
 
     @property
     def _can_film(self) -> bool:
-        return self.form.document.get("mode") != "approach-curve"
+        mode = MODES.get(str(self.form.document.get("mode")))
+        return mode is None or mode.takes_profiles
 
     def _name(self) -> str:
-        same = (name for name, found in presets().items() if found == self.form.document)
+        same = (name for name, found in read_presets().items() if found == self.form.document)
         return next(same, str(self.form.document.get("mode")))
 
     def _try(self, attempt):
@@ -190,7 +192,7 @@ class Page(pn.viewable.Viewer):
             given = base64.b64decode(content, validate=True)
             refuse_large(given, self.limits)
             if Path(name).suffix.lower() == ".nc":
-                return name, self.session.read(name, given), partial(self._uploaded, name)
+                return name, self.session.read(name, given), partial(self._list_upload, name)
             return name, Reading(partial(read_document, name, given)), self._fill_in
 
         with suppress(binascii.Error):
@@ -207,11 +209,11 @@ class Page(pn.viewable.Viewer):
     def _fill_in(self, document: dict[str, Any]) -> None:
         self.form.document = document
 
-    def _uploaded(self, name: str, result: Any) -> None:
+    def _list_upload(self, name: str, result: Any) -> None:
         """List a result from a file, if it can be drawn, and select it."""
         entry = self.session.add(name, result)
         try:
-            views([entry], entry, self.form.folder, self.theme, self._address)
+            make_views([entry], entry, self.form.folder, self.theme, self._address)
         except Exception as error:
             self.session.remove(entry.id)
             raise ValueError(f"{name}: a result that cannot be drawn ({error!r})") from error
@@ -227,7 +229,7 @@ class Page(pn.viewable.Viewer):
 
     def _follow_form(self, *_: Any) -> None:
         found = self.form.outlook
-        self._regime.state = regime_table(found.rows, self.form.problems)
+        self._regime.state = make_regime_table(found.rows, self.form.problems)
         self._notice = ""
         self._write_address()
         self._look()
@@ -244,7 +246,7 @@ class Page(pn.viewable.Viewer):
         self.form.look()
         self._bar.state = self._bar_state()
         self._list.state = {
-            "runs": [row_of(entry) for entry in self.session.entries],
+            "runs": [make_row(entry) for entry in self.session.entries],
             "selected": self._selected,
         }
         self._draw()
@@ -261,7 +263,7 @@ class Page(pn.viewable.Viewer):
             count = len(problems)
             words, bad = f"{count} value{'s' * (count > 1)} to mend before it can run", True
         elif not words and seconds is not None:
-            words = f"expected to take {about(seconds)}"
+            words = f"expected to take {describe_time(seconds)}"
         return {
             "can_run": not problems,
             "words": words,
@@ -283,7 +285,7 @@ class Page(pn.viewable.Viewer):
         titles = list(self._tabs._names)
         title = titles[self._tabs.active] if titles else _REGIME
         with self.form.files_as_read():
-            found = views(shown, selected, self.form.folder, self.theme, self._address)
+            found = make_views(shown, selected, self.form.folder, self.theme, self._address)
         kept = self._tabs[0]
         self._tabs[:] = [(_REGIME, kept), *found.items()]
         titles = [_REGIME, *found]
@@ -293,7 +295,7 @@ class Page(pn.viewable.Viewer):
     def _address(self, document) -> str:
         """Return a link to this page with a document in its form."""
         try:
-            query = to_query(document)
+            query = write_query(document)
         except ConfigError as error:
             return f"none: {error}"
         location = self._location
@@ -308,17 +310,17 @@ class Page(pn.viewable.Viewer):
     def _write_address(self) -> None:
         if self._location is not None:
             with suppress(ConfigError):
-                self._location.search = f"?{to_query(self.form.document)}"
+                self._location.search = f"?{write_query(self.form.document)}"
 
     def _read(self, query: str) -> None:
         if query.strip("?"):
 
             def attempt():
-                self.form.document = from_query(query)
+                self.form.document = read_query(query)
 
             self._try(attempt)
 
-    def _laid_out(self) -> pn.Column:
+    def _lay_out(self) -> pn.Column:
         left = pn.Column(
             pn.Column(self.form, scroll="y", sizing_mode="stretch_both", margin=(4, 0, 0, 0)),
             self._bar,
@@ -342,6 +344,6 @@ class Page(pn.viewable.Viewer):
         return pn.Column(
             self._header,
             pn.Row(left, right, sizing_mode="stretch_both"),
-            stylesheets=[] if self._served else [resource("frame.css")],
+            stylesheets=[] if self._served else [read_resource("frame.css")],
             **frame,
         )

@@ -4,16 +4,16 @@ import re
 from collections.abc import Iterator, Mapping
 from typing import Any, NamedTuple
 
-from softafm.app.documents import value_at
+from softafm.app.documents import find_value
 from softafm.app.form import (
-    MODES,
     Alternatives,
     Field,
     Section,
-    preset_titles,
-    section,
-    tables,
+    describe_section,
+    list_tables,
+    read_preset_titles,
 )
+from softafm.modes import MODES
 
 _ADVANCED = ("solver", "run")
 
@@ -45,7 +45,7 @@ class Shown(NamedTuple):
         return {f"{self.path}.{field.name}": field for field in fields}
 
 
-def shown_sections(
+def list_sections(
     document: Mapping[str, Any], preferred: Mapping[tuple[str, int], int]
 ) -> list[Shown]:
     """Return the sections of a document, each part of a sum of laws after its surface.
@@ -55,108 +55,108 @@ def shown_sections(
     """
     mode = document.get("mode")
     found = []
-    for table in tables(mode):
-        found.append(_shown(table, table, document, preferred))
+    for table in list_tables(mode):
+        found.append(_choose_shown(table, table, document, preferred))
         if "parts" in found[-1].section.fields:
-            for index in range(_length(value_at(document, f"{table}.parts"))):
+            for index in range(_count_parts(find_value(document, f"{table}.parts"))):
                 path = f"{table}.parts[{index}]"
-                found.append(_shown(path, f"{table}.parts", document, preferred))
+                found.append(_choose_shown(path, f"{table}.parts", document, preferred))
     return found
 
 
-def _length(parts: Any) -> int:
+def _count_parts(parts: Any) -> int:
     return len(parts) if isinstance(parts, list) else 0
 
 
-def _shown(
+def _choose_shown(
     path: str, table: str, document: Mapping[str, Any], preferred: Mapping[tuple[str, int], int]
 ) -> Shown:
-    written = value_at(document, path)
+    written = find_value(document, path)
     written = written if isinstance(written, dict) else {}
     mode = document.get("mode")
-    shape = section(table, written.get(section(table, None, mode).chooser), mode)
+    shape = describe_section(table, written.get(describe_section(table, None, mode).chooser), mode)
     ways = {}
-    for index, entry in enumerate(_alternatives(shape)):
-        ways[entry] = way_of(entry, written, preferred.get((path, index), 0))
+    for index, entry in enumerate(_list_alternatives(shape)):
+        ways[entry] = find_way(entry, written, preferred.get((path, index), 0))
     taken = Shown(path, shape, ways, ()).fields
     others = (field for name, field in shape.fields.items() if name in written)
     return Shown(path, shape, ways, tuple(field for field in others if field.name not in taken))
 
 
-def _alternatives(shape: Section) -> Iterator[Alternatives]:
+def _list_alternatives(shape: Section) -> Iterator[Alternatives]:
     return (entry for entry in shape.entries if isinstance(entry, Alternatives))
 
 
-def way_of(alternatives: Alternatives, given: Mapping[str, Any], preferred: int = 0) -> int:
+def find_way(alternatives: Alternatives, given: Mapping[str, Any], preferred: int = 0) -> int:
     """Return the way of which most keys are given, of several the preferred or the first one."""
     counts = [sum(key in given for key in way) for way in alternatives.names]
     preferred = preferred if preferred < len(counts) else 0
     return preferred if counts[preferred] == max(counts) else counts.index(max(counts))
 
 
-def plan_of(shown: list[Shown], largest_upload: int) -> dict[str, Any]:
+def make_plan(shown: list[Shown], largest_upload: int) -> dict[str, Any]:
     """Return what the browser needs to draw the form, whatever its fields hold."""
     return {
         "largest": largest_upload,
-        "modes": MODES,
-        "presets": list(preset_titles().items()),
-        "sections": [_section(one) for one in shown],
+        "modes": tuple(MODES),
+        "presets": list(read_preset_titles().items()),
+        "sections": [_plan_section(one) for one in shown],
     }
 
 
-def css_name(path: str) -> str:
+def make_css_name(path: str) -> str:
     """Return a path as it stands in names of CSS classes: ``surface-parts-0-law``."""
     return re.sub(r"\W+", "-", path).strip("-")
 
 
-def _section(one: Shown) -> dict[str, Any]:
+def _plan_section(one: Shown) -> dict[str, Any]:
     shape = one.section
     rows: list[dict[str, Any]] = []
     for entry in shape.entries:
         if isinstance(entry, Alternatives):
-            rows += _rows_of_alternatives(one, entry)
+            rows += _plan_alternatives(one, entry)
         else:
-            rows.append(_row(one.path, entry))
+            rows.append(_plan_row(one.path, entry))
     part = "." in shape.table
     only = (shape.choice,) == shape.choices
     return {
         "path": one.path,
-        "name": css_name(one.path),
+        "name": make_css_name(one.path),
         "title": "law" if part else shape.table,
         "part": part,
         "advanced": shape.table in _ADVANCED,
         "choices": () if only or not shape.chooser else shape.choices,
         "choice": shape.choice,
         "help": shape.help,
-        "rows": [*rows, *(_row(one.path, field) for field in one.others)],
+        "rows": [*rows, *(_plan_row(one.path, field) for field in one.others)],
     }
 
 
-def _rows_of_alternatives(one: Shown, entry: Alternatives) -> list[dict[str, Any]]:
+def _plan_alternatives(one: Shown, entry: Alternatives) -> list[dict[str, Any]]:
     """Return the row to choose a way, and its fields; a single field and its choice are one row."""
     index = list(one.ways).index(entry)
     choice = {"alternatives": index, "ways": entry.labels, "way": one.ways[entry]}
-    rows = [_row(one.path, field) for field in entry.ways[one.ways[entry]]]
+    rows = [_plan_row(one.path, field) for field in entry.ways[one.ways[entry]]]
     if all(len(way) == 1 for way in entry.ways):
         return [rows[0] | choice]
-    return [{"kind": "ways", "name": f"{css_name(one.path)}-{index}", **choice}, *rows]
+    return [{"kind": "ways", "name": f"{make_css_name(one.path)}-{index}", **choice}, *rows]
 
 
-def _row(path: str, field: Field) -> dict[str, Any]:
+def _plan_row(path: str, field: Field) -> dict[str, Any]:
     return {
         "path": f"{path}.{field.name}",
-        "name": css_name(f"{path}.{field.name}"),
+        "name": make_css_name(f"{path}.{field.name}"),
         "label": field.label,
         "kind": field.kind,
         "help": field.help,
         "required": field.required,
-        "example": _placeholder(field),
+        "example": _choose_placeholder(field),
         "choices": field.choices,
         "default": field.default,
     }
 
 
-def _placeholder(field: Field) -> str:
+def _choose_placeholder(field: Field) -> str:
     """Return what an empty field shows."""
     if field.default:
         return f"{field.default} by default"

@@ -8,7 +8,7 @@ from collections.abc import Mapping
 from contextlib import suppress
 from typing import TYPE_CHECKING, Any
 
-from softafm.files.guard import environment
+from softafm.files.guard import make_environment
 
 if TYPE_CHECKING:
     from softafm.app.worker import Answer
@@ -35,7 +35,7 @@ class Process:
         # Not multiprocessing: its children import the parent's script, and get all its environment.
         command = [sys.executable, "-P", "-m", "softafm.app.worker", str(largest)]
         self._process = subprocess.Popen(
-            command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, env=environment()
+            command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, env=make_environment()
         )
         assert self._process.stdin is not None
         assert self._process.stdout is not None

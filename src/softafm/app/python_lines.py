@@ -10,16 +10,11 @@ from typing import Any
 
 import softafm as sa
 from softafm.experiment.config import Experiment, experiment_from
+from softafm.modes import MODES
 from softafm.samples import NAMED
 
 _WIDTH = 88
 _STEP = " " * 4
-_VERBS = {
-    "force-distance": "force_distance",
-    "force-spectroscopy": "force_spectroscopy",
-    "tapping-cycle": "tapping_cycle",
-    "approach-curve": "approach_curve",
-}
 _OPTIONS = {"tolerance": 1e-2, "profiles": False, "check": False, "regularise": None}
 """What modes take besides a solver, at its default."""
 
@@ -42,25 +37,37 @@ def python_lines(document: Mapping[str, Any], folder: Path) -> str:
         f"surface = {_surface(contact.surface, document['surface'])}",
         "contact = sa.Contact(tip=tip, sample=sample, surface=surface)",
     ]
-    if experiment.cantilever is not None:
+    arguments = ["contact"]
+    mode, written = MODES[experiment.mode], document["motion"]
+    if mode.lever:
         lines.append(f"cantilever = {_source(experiment.cantilever)}")
-    arguments = ["contact", *(["cantilever"] if experiment.cantilever is not None else [])]
-    if experiment.mode in ("force-distance", "force-spectroscopy"):
-        lever = experiment.cantilever is not None
-        lines.append(f"motion = {_motion(experiment.motion, document['motion'], lever)}")
+        arguments.append("cantilever")
+    if mode.takes_motion:
+        lines.append(f"motion = {_motion(experiment.motion, written, bool(mode.lever))}")
         arguments.append("motion")
     else:
-        arguments += _oscillation(experiment, document["motion"])
+        given = mode.arguments(experiment.motion).items()
+        arguments += [_argument(*each, written) for each in given if each[1] is not None]
+    arguments += [f"{name}={_source(made)}" for name, made in experiment.tables.items()]
     arguments += _options(experiment)
-    lines.append(f"result = {_call(f'sa.{_VERBS[experiment.mode]}', arguments)}")
+    lines.append(f"result = {_call(_name(mode.function), arguments)}")
     body = "\n".join(lines) + "\n"
-    imports = ["import softafm as sa"]
+    made = (experiment.motion, *experiment.tables.values())
+    return "\n".join(_imports(body, mode.function, *map(type, made))) + "\n\n" + body
+
+
+def _imports(body: str, *used: Any) -> list[str]:
+    """Return the lines that import what the body uses; ``used`` may be of a module of its own."""
+    lines = ["import softafm as sa"]
     if "np." in body:
-        imports.insert(0, "import numpy as np\n")
+        lines.insert(0, "import numpy as np\n")
     for name in ("read_path", "read_trajectory"):
         if f"{name}(" in body:
-            imports.append(f"from softafm.files.measured import {name}")
-    return "\n".join(imports) + "\n\n" + body
+            lines.append(f"from softafm.files.measured import {name}")
+    for thing in used:
+        if _name(thing) == thing.__name__ and f"{thing.__name__}(" in body:
+            lines.append(f"from {thing.__module__} import {thing.__name__}")
+    return lines
 
 
 def _tip(tip: Any, written: Mapping[str, Any]) -> str:
@@ -107,20 +114,12 @@ def _motion(motion: Any, written: Mapping[str, Any], lever: bool) -> str:
     return _call("read_trajectory", given)
 
 
-def _oscillation(experiment: Experiment, written: Mapping[str, Any]) -> list[str]:
-    """Return the arguments that say how the tip oscillates."""
-    motion = experiment.motion
-    if experiment.mode == "tapping-cycle":
-        names = ("amplitude", "mean_height", "frequency", "cycles")
-        return [f"{name}={_value(getattr(motion, name))}" for name in names]
-    ratios = _value(motion.amplitude_ratio)
-    if "points" in written:
+def _argument(name: str, value: Any, written: Mapping[str, Any]) -> str:
+    """Return an argument of a mode; evenly spaced ones as they were written."""
+    if name == "amplitude_ratio" and "points" in written:
         ends = (_value(written[key]) for key in ("first_ratio", "last_ratio", "points"))
-        ratios = f"np.linspace({', '.join(ends)})"
-    arguments = [f"free_amplitude={_value(motion.free_amplitude)}", f"amplitude_ratio={ratios}"]
-    if motion.drive_frequency is not None:
-        arguments.append(f"drive_frequency={_value(motion.drive_frequency)}")
-    return arguments
+        return f"{name}=np.linspace({', '.join(ends)})"
+    return f"{name}={_value(value)}"
 
 
 def _options(experiment: Experiment) -> list[str]:
@@ -135,9 +134,14 @@ def _options(experiment: Experiment) -> list[str]:
 
 def _source(thing: Any) -> str:
     """Return the call that makes a dataclass of ours."""
-    name = type(thing).__name__
-    home = "sa" if getattr(sa, name, None) is type(thing) else "sa.solvers"
-    return _call(f"{home}.{name}", _arguments(thing))
+    return _call(_name(type(thing)), _arguments(thing))
+
+
+def _name(thing: Any) -> str:
+    """Return what a class or function is called, by a name of ``softafm`` if it has one."""
+    name = thing.__name__
+    homes = {"sa": sa, "sa.solvers": sa.solvers}
+    return next((f"{h}.{name}" for h, home in homes.items() if hasattr(home, name)), name)
 
 
 def _arguments(thing: Any) -> list[str]:

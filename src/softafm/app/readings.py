@@ -10,7 +10,7 @@ from time import process_time
 from typing import Any
 
 from softafm.experiment.config import LARGEST_FILE
-from softafm.files.guard import read_apart, seconds_for
+from softafm.files.guard import allow_seconds, read_apart
 
 _AT_ONCE = BoundedSemaphore(4)
 """How many files are read at a time, of all users together; others wait."""
@@ -111,7 +111,7 @@ class MeasuredFiles:
 def _read_twice(read: Callable[[Path], Any], path: Path) -> Any:
     """Read a file here once it is known that it can be read, and how long that takes."""
     reader = f"{read.__module__}:{read.__name__}"
-    read_apart(f"{__name__}:try_out", reader, str(path), seconds=seconds_for(path))
+    read_apart(f"{__name__}:try_out", reader, str(path), seconds=allow_seconds(path))
     return read(path)
 
 

@@ -3,12 +3,12 @@
 from typing import Any
 
 from softafm.app.session import Entry
-from softafm.units.quantities import readable
+from softafm.units.quantities import write_quantity
 
 
-def row_of(entry: Entry) -> dict[str, Any]:
+def make_row(entry: Entry) -> dict[str, Any]:
     """Return a run as ``page.js`` draws it."""
-    words, bad = _state_in_words(entry)
+    words, bad = _describe_state(entry)
     return {
         "id": entry.id,
         "label": entry.label,
@@ -21,7 +21,7 @@ def row_of(entry: Entry) -> dict[str, Any]:
     }
 
 
-def _state_in_words(entry: Entry) -> tuple[str, bool]:
+def _describe_state(entry: Entry) -> tuple[str, bool]:
     """Return where an entry stands, and whether that is bad."""
     job = entry.job
     if job is None:
@@ -29,18 +29,18 @@ def _state_in_words(entry: Entry) -> tuple[str, bool]:
     if entry.state == "waiting":
         return f"waiting, number {job.place} in the queue", False
     if entry.state == "running":
-        left = "" if job.remaining is None else f", about {about(job.remaining)} left"
-        return f"{about(job.elapsed)}{left}; {job.message}".rstrip("; "), False
+        left = "" if job.remaining is None else f", about {describe_time(job.remaining)} left"
+        return f"{describe_time(job.elapsed)}{left}; {job.message}".rstrip("; "), False
     if entry.state == "done":
         warned = f"; doubtful: {' '.join(entry.warnings)}" if entry.warnings else ""
-        return f"done in {about(job.elapsed)}{warned}", bool(warned)
+        return f"done in {describe_time(job.elapsed)}{warned}", bool(warned)
     return (job.problem or entry.state), entry.state == "failed"
 
 
-def about(seconds: float) -> str:
+def describe_time(seconds: float) -> str:
     """Return a time as people say it."""
     if seconds < 1:
-        return readable(float(f"{seconds:.2g}"), "s")
+        return write_quantity(float(f"{seconds:.2g}"), "s")
     if seconds < 60:
         return f"{seconds:.0f} s"
     if seconds < 3600:

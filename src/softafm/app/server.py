@@ -11,7 +11,7 @@ import panel as pn
 from panel.io.resources import LOCAL_DIST
 
 from softafm.app.limits import Limits
-from softafm.app.page import Page, resource
+from softafm.app.page import Page, read_resource
 from softafm.app.runs import Runner
 
 _PORT = 5006
@@ -45,7 +45,7 @@ def serve(
         If the port is taken or the address not ours.
     """
     runner = Runner(limits.processes, limits.waiting, limits.run_seconds, limits.kept_bytes)
-    server = _server(runner, limits, address, port, origins)
+    server = _make_server(runner, limits, address, port, origins)
     with runner:
         server.start()
         url = f"http://{'127.0.0.1' if address == '0.0.0.0' else address}:{server.port}/"
@@ -61,7 +61,7 @@ def serve(
             print("softafm: the page is closed", flush=True)
 
 
-def page(runner: Runner, limits: Limits) -> Page:
+def make_page(runner: Runner, limits: Limits) -> Page:
     """Return a page for one more user, who takes its runs along when leaving."""
     # Otherwise Panel asks an outside address for the styles of what it draws later.
     pn.state.curdoc.template_variables["dist_url"] = LOCAL_DIST
@@ -70,7 +70,7 @@ def page(runner: Runner, limits: Limits) -> Page:
     return one
 
 
-def _server(
+def _make_server(
     runner: Runner, limits: Limits, address: str, port: int | None, origins: tuple[str, ...]
 ) -> Any:
     """Return a server that listens but does not serve yet."""
@@ -78,7 +78,7 @@ def _server(
         raise ValueError(f"--port = {port}: must be between 0 and 65535")
     try:
         return pn.serve(
-            {"/": lambda: page(runner, limits)},
+            {"/": lambda: make_page(runner, limits)},
             address=address,
             port=_PORT if port is None else port,
             title="softafm",
@@ -94,9 +94,9 @@ def _server(
         )
     except OSError as error:
         if port is None and error.errno == EADDRINUSE:
-            return _server(runner, limits, address, 0, origins)
+            return _make_server(runner, limits, address, 0, origins)
         asked = f"--address = {address}" + ("" if port is None else f", --port = {port}")
         raise ValueError(f"{asked}: {error.strerror or error}") from None
 
 
-pn.config.raw_css = [*pn.config.raw_css, resource("frame.css"), resource("whole.css")]
+pn.config.raw_css = [*pn.config.raw_css, read_resource("frame.css"), read_resource("whole.css")]

@@ -33,21 +33,21 @@ pre {
 """
 
 
-def regime_table(rows: Sequence["Row"], problems: Mapping[str, str]) -> dict[str, Any]:
+def make_regime_table(rows: Sequence["Row"], problems: Mapping[str, str]) -> dict[str, Any]:
     """Return what an experiment will be, or why it cannot run, for ``page.js`` to draw."""
     if problems:
         return {"caption": "Before it can run", "rows": list(problems.items()), "bad": True}
     return {"caption": "Before any run", "rows": [list(row) for row in rows], "bad": False}
 
 
-def numbers_html(label: str, table: "Table", warnings: Iterable[str]) -> str:
+def write_numbers(label: str, table: "Table", warnings: Iterable[str]) -> str:
     """Return the observables of a result, and what is doubtful about them."""
     cells = zip(*(list(column.cells) for column in table.columns), strict=True)
     doubts = "".join(f"<p class='problem'>{escape(text)}</p>" for text in warnings)
-    return doubts + _table(label, cells)
+    return doubts + _write_table(label, cells)
 
 
-def lines_html(parts: Mapping[str, str]) -> str:
+def write_lines(parts: Mapping[str, str]) -> str:
     """Return texts to be copied, each under its heading."""
     return "".join(
         f"<h3>{escape(title)}</h3><pre tabindex='0'>{escape(text)}</pre>"
@@ -55,7 +55,7 @@ def lines_html(parts: Mapping[str, str]) -> str:
     )
 
 
-def _table(caption: str, rows: Iterable[Sequence[Any]]) -> str:
+def _write_table(caption: str, rows: Iterable[Sequence[Any]]) -> str:
     lines = "".join(
         "<tr>" + "".join(f"<td>{escape(str(cell))}</td>" for cell in row) + "</tr>" for row in rows
     )

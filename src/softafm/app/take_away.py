@@ -7,45 +7,45 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
 
-from softafm.app.links import from_query, to_query
+from softafm.app.links import read_query, write_query
 from softafm.app.python_lines import python_lines
-from softafm.experiment.schema import MOTIONS
+from softafm.modes import MODES
 
 if TYPE_CHECKING:
     from xarray import Dataset
 
 __all__ = [
-    "command_line",
-    "csv_bytes",
-    "file_name",
-    "from_query",
-    "netcdf_bytes",
-    "picture",
+    "draw_picture",
+    "name_file",
     "python_lines",
-    "to_query",
-    "toml_text",
+    "read_query",
+    "write_command",
+    "write_csv",
+    "write_netcdf",
+    "write_query",
+    "write_toml",
 ]
 
 
-def toml_text(document: Mapping[str, Any]) -> str:
+def write_toml(document: Mapping[str, Any]) -> str:
     """Return a document as an experiment file."""
     import tomli_w
 
     return tomli_w.dumps(document)
 
 
-def file_name(document: Mapping[str, Any]) -> str:
+def name_file(document: Mapping[str, Any]) -> str:
     """Return the name under which the page offers a document's experiment file."""
-    mode = document.get("mode")
-    return f"{mode if mode in list(MOTIONS) else 'experiment'}.toml"
+    mode = str(document.get("mode"))
+    return f"{mode if mode in MODES else 'experiment'}.toml"
 
 
-def command_line(document: Mapping[str, Any]) -> str:
-    """Return the shell line that runs the experiment file, downloaded as ``file_name``, again."""
-    return shlex.join(["softafm", "run", file_name(document)])
+def write_command(document: Mapping[str, Any]) -> str:
+    """Return the shell line that runs the experiment file, downloaded as ``name_file``, again."""
+    return shlex.join(["softafm", "run", name_file(document)])
 
 
-def csv_bytes(result: "Dataset") -> bytes:
+def write_csv(result: "Dataset") -> bytes:
     """Return the curves of a result as ``softafm.export`` writes them to CSV."""
     from softafm.results.datasets import export
 
@@ -55,7 +55,7 @@ def csv_bytes(result: "Dataset") -> bytes:
         return path.read_bytes()
 
 
-def netcdf_bytes(result: "Dataset") -> bytes:
+def write_netcdf(result: "Dataset") -> bytes:
     """Return a result as ``softafm.save`` writes it, for ``softafm.load``."""
     from softafm.results.datasets import save
 
@@ -65,7 +65,7 @@ def netcdf_bytes(result: "Dataset") -> bytes:
         return path.read_bytes()
 
 
-def picture(
+def draw_picture(
     results: Sequence["Dataset"],
     kind: Literal["png", "svg"],
     labels: Sequence[str] | None = None,

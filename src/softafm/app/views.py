@@ -9,20 +9,20 @@ import panel as pn
 
 from softafm.app import take_away
 from softafm.app.colours import Theme
-from softafm.app.curves import Shown, figures
-from softafm.app.movie import movie
+from softafm.app.curves import Shown, draw_figures
+from softafm.app.movie import make_player
 from softafm.app.session import Entry
-from softafm.app.tables import STYLE, lines_html, numbers_html
+from softafm.app.tables import STYLE, write_lines, write_numbers
 
 SURFACE, NUMBERS, TAKE_AWAY = "Surface", "Numbers", "Take away"
 
 
-def html(text: str, **options: Any) -> pn.pane.HTML:
+def make_pane(text: str, **options: Any) -> pn.pane.HTML:
     """Return a pane of HTML with the page's style of tables."""
     return pn.pane.HTML(text, stylesheets=[STYLE], sizing_mode="stretch_width", **options)
 
 
-def views(
+def make_views(
     entries: list[Entry], selected: Entry | None, folder: Path, theme: Theme, address: Callable
 ) -> dict[str, Any]:
     """Return the tabs' contents by title.
@@ -33,25 +33,25 @@ def views(
     drawn = [Shown(entry.label, entry.colour, entry.result) for entry in entries]
     found: dict[str, Any] = {
         title: pn.pane.Bokeh(layout, sizing_mode="stretch_both")
-        for title, layout in figures(drawn, theme).items()
+        for title, layout in draw_figures(drawn, theme).items()
     }
     if selected is not None:
-        player = movie(selected.result, theme)
+        player = make_player(selected.result, theme)
         if player is not None:
             found[SURFACE] = pn.pane.Bokeh(player, sizing_mode="stretch_both")
-        found[NUMBERS] = _numbers([*entries, *([] if selected in entries else [selected])])
-        found[TAKE_AWAY] = _take_away(selected, entries, folder, address)
+        found[NUMBERS] = _show_numbers([*entries, *([] if selected in entries else [selected])])
+        found[TAKE_AWAY] = _show_take_away(selected, entries, folder, address)
     return found
 
 
-def _numbers(entries: list[Entry]) -> pn.Column:
-    from softafm.draw.summary import observables
+def _show_numbers(entries: list[Entry]) -> pn.Column:
+    from softafm.draw.summary import list_observables
 
-    tables = [numbers_html(e.label, observables(e.result), e.warnings) for e in entries]
-    return pn.Column(*map(html, tables), scroll=True, sizing_mode="stretch_both")
+    tables = [write_numbers(e.label, list_observables(e.result), e.warnings) for e in entries]
+    return pn.Column(*map(make_pane, tables), scroll=True, sizing_mode="stretch_both")
 
 
-def _take_away(
+def _show_take_away(
     entry: Entry, entries: list[Entry], folder: Path, address: Callable[[Mapping], str]
 ) -> pn.Column:
     result, document = entry.result, entry.document
@@ -59,16 +59,16 @@ def _take_away(
     same = same if entry in same else [entry]
 
     def picture(kind: Any) -> bytes:
-        return take_away.picture([e.result for e in same], kind, [e.label for e in same])
+        return take_away.draw_picture([e.result for e in same], kind, [e.label for e in same])
 
     files = {
-        "result.nc": lambda: take_away.netcdf_bytes(result),
-        "curves.csv": lambda: take_away.csv_bytes(result),
+        "result.nc": lambda: take_away.write_netcdf(result),
+        "curves.csv": lambda: take_away.write_csv(result),
         "figure.png": lambda: picture("png"),
         "figure.svg": lambda: picture("svg"),
     }
     if document:
-        files[take_away.file_name(document)] = lambda: take_away.toml_text(document).encode()
+        files[take_away.name_file(document)] = lambda: take_away.write_toml(document).encode()
     buttons = [
         pn.widgets.FileDownload(
             callback=lambda write=write: io.BytesIO(write()),
@@ -84,23 +84,23 @@ def _take_away(
     texts = {}
     if document:
         texts = {
-            f"To run it again: {take_away.file_name(document)} and this command": (
-                take_away.command_line(document)
+            f"To run it again: {take_away.name_file(document)} and this command": (
+                take_away.write_command(document)
             ),
             "In Python": take_away.python_lines(document, folder),
             "A link to this form": address(document),
         }
-    title = html(f"<h3>{_escaped(entry.label)}: files</h3>")
+    title = make_pane(f"<h3>{_escape(entry.label)}: files</h3>")
     return pn.Column(
         title,
         pn.FlexBox(*buttons, gap="8px", sizing_mode="stretch_width"),
-        html(lines_html(texts)),
+        make_pane(write_lines(texts)),
         scroll=True,
         sizing_mode="stretch_both",
     )
 
 
-def _escaped(text: str) -> str:
+def _escape(text: str) -> str:
     from html import escape
 
     return escape(text)

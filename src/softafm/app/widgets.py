@@ -15,20 +15,21 @@ from weakref import finalize
 import panel as pn
 import param
 
-from softafm.app.answers import added, chosen, moded, taken
-from softafm.app.documents import ordered, read_text, value_at, with_value, without, written_text
-from softafm.app.form import MODES, presets
-from softafm.app.marks import placed, with_missing
-from softafm.app.outlook import Outlook, outlook
-from softafm.app.plan import Shown, plan_of, shown_sections
+from softafm.app.answers import add_part, change_mode, choose, take_way
+from softafm.app.documents import arrange, find_value, read_text, remove, replace_value, write_text
+from softafm.app.form import read_presets
+from softafm.app.marks import add_missing, place
+from softafm.app.outlook import Outlook, foresee
+from softafm.app.plan import Shown, list_sections, make_plan
 from softafm.app.readings import MeasuredFiles
 from softafm.app.uploads import keep
 from softafm.experiment.entries import files_read_by
+from softafm.modes import MODES
 
 _LONGEST_TEXT = 20_000
 
 
-def _resource(name: str) -> str:
+def _read_resource(name: str) -> str:
     return (resources.files("softafm.app") / name).read_text(encoding="utf-8")
 
 
@@ -40,8 +41,8 @@ class Fields(pn.custom.JSComponent):
 
     plan = param.Dict(default={})
     state = param.Dict(default={})
-    _esm = _resource("form.js")
-    _stylesheets = (_resource("form.css"),)
+    _esm = _read_resource("form.js")
+    _stylesheets = (_read_resource("form.css"),)
 
     def __init__(self, form: "Form", **params):
         super().__init__(**params)
@@ -86,7 +87,7 @@ class Form(pn.viewable.Viewer):
             self._own = finalize(self, shutil.rmtree, folder, ignore_errors=True)
         self.folder, self.largest_upload = folder, largest_upload
         self._measured, self._reading = MeasuredFiles(), False
-        self._presets = presets()
+        self._presets = read_presets()
         self._typed: dict[str, str] = {}
         self._memory: dict[str, Any] = {}
         self._ways: dict[tuple[str, int], int] = {}
@@ -116,27 +117,27 @@ class Form(pn.viewable.Viewer):
             value = text == "true"
         if field.kind in ("flag", "choice") and text == field.default:
             value = None
-        self._answer(with_value(self.document, path, value))
+        self._answer(replace_value(self.document, path, value))
 
     def choose(self, path: str, choice: str) -> None:
         """Choose the shape, model, law or name of the section at a path, such as ``"tip"``.
 
         What fields of both choices hold is kept, and all else remembered for a way back.
         """
-        self._answer(chosen(self.document, self._section(path), choice, self._memory))
+        self._answer(choose(self.document, self._section(path), choice, self._memory))
 
     def choose_mode(self, mode: str) -> None:
         """Choose the mode; the motion keeps what it can, and a lever is there if it is needed."""
         if mode not in MODES:
             raise KeyError(mode)
-        self._answer(moded(self.document, mode, self._memory))
+        self._answer(change_mode(self.document, mode, self._memory))
 
     def choose_way(self, path: str, alternatives: int, way: int) -> None:
         """Choose in which way a section's alternatives, counted from 0, are given."""
         section = self._section(path)
         self._ways[path, alternatives] = way
         entry = list(section.ways)[alternatives]
-        self._answer(taken(self.document, path, entry, way, self._memory))
+        self._answer(take_way(self.document, path, entry, way, self._memory))
 
     def use_preset(self, name: str) -> None:
         """Fill the form with a bundled experiment."""
@@ -144,12 +145,12 @@ class Form(pn.viewable.Viewer):
 
     def add_part(self) -> None:
         """Add a law to a sum."""
-        self._answer(added(self.document))
+        self._answer(add_part(self.document))
 
     def remove(self, path: str) -> None:
         """Remove what stands at a path: a part of a sum, or a key that is of no use."""
         self._typed.clear()
-        self._answer(without(self.document, path))
+        self._answer(remove(self.document, path))
 
     def upload(self, path: str, name: str, content: bytes) -> None:
         """Keep a file and name it in a field; one that is refused is a problem of that field.
@@ -219,7 +220,7 @@ class Form(pn.viewable.Viewer):
 
     def _answer(self, document: dict[str, Any]) -> None:
         with self._answers():
-            document = ordered(document)
+            document = arrange(document)
             if document == self.document:
                 self._follow()
             else:
@@ -231,23 +232,23 @@ class Form(pn.viewable.Viewer):
         if not self._answering:
             for memory in (self._typed, self._memory, self._ways, self._refused):
                 memory.clear()
-        self._shown = shown_sections(self.document, self._ways)
+        self._shown = list_sections(self.document, self._ways)
         with self.files_as_read():
-            found = outlook(self.document, self.folder)
+            found = foresee(self.document, self.folder)
         self._reading = self._measured.busy
-        problems = with_missing(found.problems, self._shown, self.document) | self._refused
+        problems = add_missing(found.problems, self._shown, self.document) | self._refused
         found = Outlook(problems) if problems else found
         self.param.update(outlook=found, problems=found.problems)
         self._fields.param.update(
-            plan=plan_of(self._shown, self.largest_upload), state=self._state()
+            plan=make_plan(self._shown, self.largest_upload), state=self._state()
         )
 
     def _state(self) -> dict[str, Any]:
         """Return what the fields hold, and what is wrong with it."""
-        at, self._elsewhere = placed(self.problems, self._shown)
+        at, self._elsewhere = place(self.problems, self._shown)
         mode = self.document.get("mode")
         return {
-            "mode": mode if mode in MODES else "",
+            "mode": mode if mode in list(MODES) else "",
             "preset": next((n for n, d in self._presets.items() if d == self.document), ""),
             "texts": {path: self._text(path) for path in self._inputs},
             "problems": at if self.show_problems else {},
@@ -256,7 +257,7 @@ class Form(pn.viewable.Viewer):
 
     def _text(self, path: str) -> str:
         """Return what a field holds: as it was typed, if that is what the document says."""
-        value, typed = value_at(self.document, path), self._typed.get(path)
+        value, typed = find_value(self.document, path), self._typed.get(path)
         if typed is not None and read_text(typed, self._inputs[path]) == value:
             return typed
-        return written_text(value)
+        return write_text(value)

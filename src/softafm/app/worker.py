@@ -93,13 +93,13 @@ def answer(document: Mapping[str, Any], folder: str, outlet: Outlet) -> tuple[st
         except MemoryError:
             last = "problem", f"it needs more memory than a run may have here: {_SMALLER}"
         except (ValueError, DivergedError) as error:
-            last = "problem", one_line(str(error))
+            last = "problem", join_lines(str(error))
         except Exception as error:
             traceback.print_exc()
-            last = "problem", one_line(f"{type(error).__name__}: {error}")
+            last = "problem", join_lines(f"{type(error).__name__}: {error}")
     for warning in found:
         if issubclass(warning.category, AccuracyWarning):
-            outlet.say("warning", one_line(str(warning.message)))
+            outlet.say("warning", join_lines(str(warning.message)))
     return last
 
 
@@ -111,7 +111,7 @@ def refuse_large(kind: str, content: Any, largest: int) -> tuple[str, Any]:
     return kind, content
 
 
-def one_line(text: str) -> str:
+def join_lines(text: str) -> str:
     """Return lines as sentences of one."""
     return "; ".join(" ".join(line.split()) for line in text.splitlines() if line.strip())
 

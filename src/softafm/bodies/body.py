@@ -6,16 +6,10 @@ from typing import TYPE_CHECKING, Any, Protocol
 import numpy as np
 
 from softafm.bodies.half_space import HalfSpace
-from softafm.checks.kinds import refuse_incomplete, refuse_sample
+from softafm.checks.kinds import members, refuse_incomplete, refuse_sample
 
 if TYPE_CHECKING:
     from softafm.bodies.mesh import UnitMesh
-
-BODY = (
-    "kind", "sample", "compliance", "key", "length", "widest", "decay", "influence", "depth",
-    "hardening",
-)  # fmt: skip
-"""What a body has; of the user's own, too."""
 
 
 class Body(Hashable, Protocol):
@@ -83,7 +77,9 @@ def body_of(sample: Any) -> Body:
         If it is neither, or lacks something that a body or a sample has.
     """
     if hasattr(sample, "influence"):
-        refuse_incomplete("sample", sample, BODY, "a body such as softafm.bodies.HalfSpace")
+        refuse_incomplete(
+            "sample", sample, members(Body), "a body such as softafm.bodies.HalfSpace"
+        )
         refuse_sample("sample.sample", sample.sample)
         return sample
     refuse_sample("sample", sample)

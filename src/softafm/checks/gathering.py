@@ -47,7 +47,7 @@ def gather(
     """
     kinds: dict[str, list[Placed]] = {}
     for placed in found:
-        kinds.setdefault(kind_of(placed[1]), []).append(placed)
+        kinds.setdefault(find_kind(placed[1]), []).append(placed)
     gathered = []
     for alike in kinds.values():
         place, worst = max(alike, key=lambda placed: placed[1].severity)
@@ -58,17 +58,17 @@ def gather(
     return gathered
 
 
-def worst_of_each_kind(found: Iterable[AccuracyWarning]) -> list[AccuracyWarning]:
+def keep_worst(found: Iterable[AccuracyWarning]) -> list[AccuracyWarning]:
     """Return of the warnings of one run the worst of each kind."""
     worst: dict[str, AccuracyWarning] = {}
     for each in found:
-        kind = kind_of(each)
+        kind = find_kind(each)
         if kind not in worst or each.severity > worst[kind].severity:
             worst[kind] = each
     return list(worst.values())
 
 
-def kind_of(warning: AccuracyWarning) -> str:
+def find_kind(warning: AccuracyWarning) -> str:
     """Return what warnings of a kind have in common: their words before the first number."""
     text = str(warning)
     return text[: next((i for i, letter in enumerate(text) if letter.isdigit()), len(text))]

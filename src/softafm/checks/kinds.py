@@ -6,8 +6,6 @@ from typing import Any
 
 from softafm.checks.refusals import all_of, shown
 
-SOLVER = ("kind", "adaptive", "solve")
-"""What a solver has; of the user's own, too."""
 SAMPLE = ("kind", "compliance", "poisson")
 """What a sample has, whatever its class."""
 REDUCED = (
@@ -15,14 +13,19 @@ REDUCED = (
     "stress without the factor 1 − ν², and poisson"
 )
 """What is wrong with a sample that states its compliance as a half-space has it."""
-MOTION = ("kind", "breaks", "landmarks", "top_speed", "height", "velocity", "compiled_height")
-"""What a motion has; of the user's own, too."""
+
+
+def members(protocol: type) -> tuple[str, ...]:
+    """Return the names that a protocol asks for, in the order in which it states them."""
+    return tuple(name for name in vars(protocol) if not name.startswith("_"))
 
 
 def refuse_other(name: str, value: Any, kind: type | tuple[type, ...], wanted: str) -> None:
     """Raise ValueError if ``value`` is no instance of a class; ``wanted`` says in words of what."""
     if not isinstance(value, kind):
-        raise ValueError(f"{name} = {_given(value)}: must be {wanted}{_call(value)}")
+        raise ValueError(
+            f"{name} = {_describe_given(value)}: must be {wanted}{_describe_call(value)}"
+        )
 
 
 def refuse_incomplete(name: str, value: Any, needed: Sequence[str], wanted: str) -> None:
@@ -33,13 +36,15 @@ def refuse_incomplete(name: str, value: Any, needed: Sequence[str], wanted: str)
     if not missing and not isinstance(value, type):
         return
     lacks = f"; it has no {all_of(missing)}" if 0 < len(missing) < len(needed) else ""
-    raise ValueError(f"{name} = {_given(value)}: must be {wanted}{lacks}{_call(value)}")
+    raise ValueError(
+        f"{name} = {_describe_given(value)}: must be {wanted}{lacks}{_describe_call(value)}"
+    )
 
 
 def refuse_sample(name: str, value: Any) -> None:
     """Raise ValueError if ``value`` lacks something that a sample has."""
     if hasattr(value, "reduced_compliance") and not hasattr(value, "compliance"):
-        raise ValueError(f"{name} = {_given(value)}: {REDUCED}")
+        raise ValueError(f"{name} = {_describe_given(value)}: {REDUCED}")
     refuse_incomplete(name, value, SAMPLE, "a sample such as softafm.Elastic")
 
 
@@ -62,20 +67,20 @@ def list_of(name: str, value: Any, kind: type, wanted: str) -> list:
     return found
 
 
-def _callable(value: Any) -> bool:
+def _is_callable(value: Any) -> bool:
     return isinstance(value, type) or isroutine(value)
 
 
-def _given(value: Any) -> str:
+def _describe_given(value: Any) -> str:
     """Return a value as the user would recognise it: of a function or class its name."""
-    if not _callable(value):
+    if not _is_callable(value):
         return " ".join(shown(value).split())
     return f"<{'class' if isinstance(value, type) else 'function'} {value.__qualname__}>"
 
 
-def _call(value: Any) -> str:
+def _describe_call(value: Any) -> str:
     """Say how to call a function or class that was given in place of what it makes."""
-    if not _callable(value):
+    if not _is_callable(value):
         return ""
     room = "softafm.samples." if value.__module__ == "softafm.samples" else ""
     try:

@@ -3,7 +3,7 @@
 from pathlib import Path
 
 
-def why_no_file(path: Path) -> str:
+def explain_no_file(path: Path) -> str:
     """Return in words why a path is not that of a regular file."""
     if path.is_dir():
         return "is a directory"

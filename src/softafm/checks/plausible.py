@@ -1,10 +1,9 @@
 """Values of a size that hardly any experiment has: most likely their unit is not the SI's."""
 
-import sys
-import warnings
 from math import inf
 from typing import NamedTuple
 
+from softafm.checks.callers import warn_caller
 from softafm.errors import DoubtfulValueWarning
 
 
@@ -37,17 +36,9 @@ def doubt(name: str, number: float, unit: str) -> None:
     if least <= abs(number) <= most:
         return
     size = "small" if abs(number) < least else "large"
-    warnings.warn(
-        f"{name} = {number:g} {unit}: is very {size}, as all values are in SI units; did you mean "
-        f"{number * factor:g} ({number:g} {common})?",
-        DoubtfulValueWarning,
-        stacklevel=_frames_of_ours(),
+    warn_caller(
+        DoubtfulValueWarning(
+            f"{name} = {number:g} {unit}: is very {size}, as all values are in SI units; did you "
+            f"mean {number * factor:g} ({number:g} {common})?"
+        )
     )
-
-
-def _frames_of_ours() -> int:
-    """Count the frames from the function that asks up to the first one outside of the package."""
-    frame, count = sys._getframe(1), 0
-    while frame is not None and frame.f_globals.get("__name__", "").startswith("softafm."):
-        frame, count = frame.f_back, count + 1  # type: ignore[assignment]
-    return count + 1

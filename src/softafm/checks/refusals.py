@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from pydantic import BaseModel
 
-from softafm.checks.suggestions import meant
+from softafm.checks.suggestions import guess
 
 _LONGEST_SHOWN = 60
 _MOST_TOLD = 50
@@ -25,25 +25,27 @@ class ConfigError(ValueError):
     """An experiment file or an override that cannot be used: one line for each problem."""
 
     def __init__(self, problems: Sequence[str]):
-        lines = [_one_line(problem) for problem in problems[:_MOST_TOLD]]
+        lines = [_escape(problem) for problem in problems[:_MOST_TOLD]]
         if len(problems) > _MOST_TOLD:
             lines.append(f"and {len(problems) - _MOST_TOLD} more like these")
         super().__init__("\n".join(lines))
 
 
-def problems(name: str, model: "type[BaseModel]", error: Any, valid: list[str]) -> list[str]:
+def describe_problems(
+    name: str, model: "type[BaseModel]", error: Any, valid: list[str]
+) -> list[str]:
     """Put one of pydantic's errors into sentences: one, or those of a table within the table."""
     inner = error.get("ctx", {}).get("error")
     if isinstance(inner, ConfigError):
         return [f"{name}.{line}" for line in str(inner).splitlines()]
-    return [_problem(name, model, error, valid)]
+    return [_describe_problem(name, model, error, valid)]
 
 
-def _problem(name: str, model: "type[BaseModel]", error: Any, valid: list[str]) -> str:
+def _describe_problem(name: str, model: "type[BaseModel]", error: Any, valid: list[str]) -> str:
     key = error["loc"][0]
     path = f"{name}.{key}" + "".join(f"[{index}]" for index in error["loc"][1:])
     if error["type"] == "extra_forbidden":
-        return unknown(key, valid, f"{name}.{key}")
+        return refuse_unknown(key, valid, f"{name}.{key}")
     if error["type"] == "missing":
         what = model.model_fields[key].description
         return f"{path}: missing" + (f"; must be {what}" if what else "")
@@ -51,7 +53,7 @@ def _problem(name: str, model: "type[BaseModel]", error: Any, valid: list[str]) 
     return f"{path} = {shown(error['input'])}: {reason}"
 
 
-def as_written(table: str, written: Mapping[str, Any], error: Exception) -> str | None:
+def reword(table: str, written: Mapping[str, Any], error: Exception) -> str | None:
     """Reword an object's refusal, ``field = value unit: reason``, with what the user wrote.
 
     None if it names no field of the table.
@@ -60,7 +62,7 @@ def as_written(table: str, written: Mapping[str, Any], error: Exception) -> str 
     if match is None:
         return None
     name, index, reason = match.groups()
-    name = _key(name, written)
+    name = _find_key(name, written)
     if name not in written:
         return None
     value = written[name]
@@ -68,20 +70,20 @@ def as_written(table: str, written: Mapping[str, Any], error: Exception) -> str 
         name, value = f"{name}[{index}]", value[int(index)]
 
     def other(mention: re.Match) -> str:
-        key = _key(mention[1], written)
+        key = _find_key(mention[1], written)
         return f"{table}.{key} = {shown(written[key])}" if key in written else mention[0]
 
     reason = re.sub(r"(?<![\w/])(\w+) = [-+.\de]+ [^\s,;)]+", other, reason)
-    reason = re.sub(r"(?<=as many as )\w+", lambda mention: _key(mention[0], written), reason)
+    reason = re.sub(r"(?<=as many as )\w+", lambda mention: _find_key(mention[0], written), reason)
     return f"{table}.{name} = {shown(value)}: {reason}"
 
 
-def _key(name: str, written: Mapping[str, Any]) -> str:
+def _find_key(name: str, written: Mapping[str, Any]) -> str:
     """Return the key under which the user wrote what a constructor calls ``name``."""
     return next((key for key in (name, *_OTHER_NAMES.get(name, ())) if key in written), name)
 
 
-def unknown(key: str, valid: Sequence[str], path: str) -> str:
+def refuse_unknown(key: str, valid: Sequence[str], path: str) -> str:
     """Refuse a key that does not exist."""
     return f"{path[:_LONGEST_SHOWN]}: unknown key; {nearest(key, valid)}"
 
@@ -89,7 +91,7 @@ def unknown(key: str, valid: Sequence[str], path: str) -> str:
 def nearest(given: object, valid: Sequence[str]) -> str:
     """Say which of the valid names was probably meant, or all of them."""
     text = given[:_LONGEST_SHOWN] if isinstance(given, str) else ""
-    near = meant(text, valid)
+    near = guess(text, valid)
     if near:
         return f"did you mean {one_of(near)}? It must be {one_of(valid)}"
     return f"must be {one_of(valid)}"
@@ -115,6 +117,6 @@ def shown(value: object) -> str:
     return text if len(text) <= _LONGEST_SHOWN else text[: _LONGEST_SHOWN - 3] + "..."
 
 
-def _one_line(text: str) -> str:
+def _escape(text: str) -> str:
     """Escape what would break or disturb the line."""
     return "".join(c if c.isprintable() else repr(c)[1:-1] for c in text)

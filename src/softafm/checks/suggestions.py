@@ -47,11 +47,7 @@ _OTHER_WORDS = {
     "setpoint": "amplituderatio ratio",
     "dwell": "hold holdtime wait pause",
     "tolerance": "tol accuracy error",
-    # modes
-    "force-distance": "forcecurve fd indentation",
-    "force-spectroscopy": "forcecurve fz",
-    "tapping-cycle": "tapping am amplitudemodulation",
-    "approach-curve": "apd amplitudecurve dynamicspectroscopy",
+    # modes of maps
     "tapping-map": "tapping am amplitudemodulation",
     "force-volume": "forcemap",
     # choices
@@ -86,29 +82,34 @@ _LIMITS = {
 """Theories of contact that are taken for laws, and of what they are the limit."""
 
 
-def limit(given: str) -> str:
+def call_also(name: str, words: str) -> None:
+    """Add other words for a name, in small letters without hyphens, separated by spaces."""
+    _OTHER_WORDS[name] = words
+
+
+def explain_limit(given: str) -> str:
     """Say of a theory of contact given as a surface law what it is instead; else return ""."""
-    name, what = _LIMITS.get(_plain(given), ("", ""))
+    name, what = _LIMITS.get(_simplify(given), ("", ""))
     return name and (
         f"{name} is no law but the limit of {what}; its closed form is in softafm.indentation; "
     )
 
 
-def meant(given: str, valid: Sequence[str]) -> list[str]:
+def guess(given: str, valid: Sequence[str]) -> list[str]:
     """Return the valid names that are probably meant by ``given``, or none.
 
     In this order: the same but for case, hyphens and underscores; another word for it; a slip of
     the keyboard; a part of it; and at last what is similar.
     """
-    plain = {name: _plain(name) for name in valid}
-    wanted = _plain(given)
+    plain = {name: _simplify(name) for name in valid}
+    wanted = _simplify(given)
     if not wanted:
         return []
     slips = 1 if len(wanted) < 6 else 2
     readings = (
         [name for name in valid if plain[name] == wanted],
         [name for name in valid if wanted in _OTHER_WORDS.get(name, "").split()],
-        [name for name in valid if len(wanted) > 2 and _slips(wanted, plain[name]) <= slips],
+        [name for name in valid if len(wanted) > 2 and _count_slips(wanted, plain[name]) <= slips],
         [name for name in valid if len(wanted) > 2 and wanted in plain[name]],
     )
     similar = get_close_matches(wanted, plain.values(), n=1, cutoff=0.75)
@@ -116,11 +117,11 @@ def meant(given: str, valid: Sequence[str]) -> list[str]:
     return found[:_MOST]
 
 
-def _plain(name: str) -> str:
+def _simplify(name: str) -> str:
     return "".join(c for c in name.casefold() if c not in "-_ ")
 
 
-def _slips(one: str, other: str) -> int:
+def _count_slips(one: str, other: str) -> int:
     """Count letters left out, added, changed, or swapped with a neighbour between two words."""
     before: list[int] = []
     row = list(range(len(other) + 1))

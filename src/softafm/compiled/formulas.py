@@ -82,7 +82,7 @@ def bound_parameters(
     return tuple((key, finite(key, value, "SI units")) for key, value in values.items())
 
 
-def first_line(error: Exception) -> str:
+def find_first_line(error: Exception) -> str:
     """Return what numba has to say of a function, which it says in many lines and many types."""
     lines = [line.strip() for line in str(error).splitlines() if line.strip()]
     reason = next((line for line in lines if not line.startswith("Failed in")), "")

@@ -12,11 +12,12 @@ from hashlib import sha256
 from typing import Any
 
 from numba import config, float64, int64, njit, types, void
+from numba.core import cgutils
 from numba.core.caching import _Cache
 from numba.core.compiler import CompileResult
 from numba.core.serialize import dumps
-from numba.experimental.function_type import _get_wrapper_address
-from numba.extending import typeof_impl
+from numba.experimental.function_type import FunctionModel, _get_wrapper_address
+from numba.extending import NativeValue, register_model, typeof_impl, unbox
 
 from softafm.compiled import store
 from softafm.compiled.formulas import Shape
@@ -50,6 +51,16 @@ PROFILE = void(_ARRAY, _ARRAY, _ARRAY, int64)
 HEIGHT = float64(float64, _ARRAY)
 """``(time, parameters) -> height``: tip height above the undeformed surface, in m."""
 
+RESPONSE = types.UniTuple(float64, 2)(float64, float64, float64, float64, _ARRAY, _ARRAY)
+"""``(time, step, deflection, force, parameters, state) -> (rest, stiffness)`` of a lever over the
+step, s, that ends at ``time`` and begins with this deflection, m, and force, N; in m and N/m.
+
+A lever of infinite stiffness keeps its deflection."""
+
+ACCEPTANCE = void(float64, float64, float64, float64, _ARRAY, _ARRAY)
+"""``(time, step, before, force, parameters, state)``: let the lever remember, in ``state``, that
+the force on it went from one to the other, N, in the step that ended at ``time``."""
+
 
 def compile_for(signature: Any, **options: Any) -> Callable[[Callable], Any]:
     """Decorate a function, to be compiled for ``signature`` here and now, or taken from the store.
@@ -72,7 +83,7 @@ def compile_for(signature: Any, **options: Any) -> Callable[[Callable], Any]:
             raise RuntimeError(f"{function.__code__.co_filename} is not in store.ROOMS")
         dispatcher = njit(**(_OPTIONS | _NO_MEMORY | options))(function)
         dispatcher._cache = _Store(function)
-        with store.in_turn():
+        with store.take_turns():
             dispatcher.compile(signature)
         dispatcher.disable_compile()
         return dispatcher
@@ -134,6 +145,25 @@ class _Store(_Cache):
         """Do nothing: code of another build is never found."""
 
 
+class Pointer(types.FunctionType):
+    """The type by which kernels know a ``CompiledFunction``: numba's, but quick to hand over."""
+
+
+register_model(Pointer)(FunctionModel)
+
+
+@unbox(Pointer)
+def _hand_over(typ, function, c):
+    """Read the address that the function keeps: numba looks for it for 7 µs at every call."""
+    address = c.pyapi.object_getattr_string(function, "address")
+    with c.builder.if_then(cgutils.is_null(c.builder, address), likely=False):
+        c.builder.ret(c.pyapi.get_null_object())
+    handed = cgutils.create_struct_proxy(typ)(c.context, c.builder)
+    handed[0] = c.pyapi.long_as_voidptr(address)  # the others are not called by
+    c.pyapi.decref(address)
+    return NativeValue(handed._getvalue())
+
+
 class CompiledFunction(types.WrapperAddressProtocol):
     """A function compiled for one signature, to be called from Python or handed to a kernel.
 
@@ -151,50 +181,59 @@ class CompiledFunction(types.WrapperAddressProtocol):
         return compile_it(self._signature)(self._python)
 
     @cached_property
-    def _address(self) -> int:
+    def address(self) -> int:
+        """Where its machine code starts."""
         return _get_wrapper_address(self._compiled, self._signature)
 
     def __call__(self, *arguments):
         return self._compiled(*arguments)
 
     def __wrapper_address__(self) -> int:
-        return self._address
+        return self.address
 
     def signature(self):
         """The numba signature it is compiled for."""
         return self._signature
 
     @cached_property
-    def numba_type(self) -> types.FunctionType:
+    def numba_type(self) -> Pointer:
         """The type that kernels know it by."""
-        return types.FunctionType(self._signature)
+        return Pointer(self._signature)
 
 
 @typeof_impl.register(CompiledFunction)
-def _type_of(function, context):
+def _find_type(function, context):
     return function.numba_type
 
 
-def pointer(signature: Any) -> types.FunctionType:
+def pointer(signature: Any) -> Pointer:
     """Return the type of a first-class compiled function with this signature."""
-    return types.FunctionType(signature)
+    return Pointer(signature)
 
 
 def compiled(signature: Any) -> Callable[[Callable], CompiledFunction]:
-    """Decorate a function, to be compiled for ``signature`` when it is first used."""
-    return lambda function: CompiledFunction(function, signature)
+    """Decorate a function, to be compiled for ``signature`` when it is first used.
+
+    One of this package is kept on disk; a user's is compiled anew in every process.
+    """
+
+    def compile_later(function: Callable) -> CompiledFunction:
+        on_disk = store.is_ours(function.__code__.co_filename)
+        return CompiledFunction(function, signature, on_disk)
+
+    return compile_later
 
 
 @cache
-def pressure_functions(shapes: tuple[Shape, ...]) -> tuple[CompiledFunction, CompiledFunction]:
+def compile_pressure(shapes: tuple[Shape, ...]) -> tuple[CompiledFunction, CompiledFunction]:
     """Compile the sum of laws ``f(gap, ...) -> (pressure, slope, potential)``: p and Φ.
 
     ``shapes`` are those of the law's terms. The functions' parameters are the origin that gaps are
     counted from, m, then those of the terms.
     """
     arguments, gap = "gap, parameters, pressure, slope, n", "gap[i] + parameters[0]"
-    pressure = _loop(shapes, arguments, gap, 1, ("pressure", "slope", ""))
-    potential = _loop(shapes, "gap, parameters, potential, n", gap, 1, ("", "", "potential"))
+    pressure = _write_loop(shapes, arguments, gap, 1, ("pressure", "slope", ""))
+    potential = _write_loop(shapes, "gap, parameters, potential, n", gap, 1, ("", "", "potential"))
     on_disk = all(map(_is_ours, shapes))
     return (
         CompiledFunction(pressure, PRESSURE, on_disk),
@@ -203,18 +242,18 @@ def pressure_functions(shapes: tuple[Shape, ...]) -> tuple[CompiledFunction, Com
 
 
 @cache
-def profile_function(shape: Shape) -> CompiledFunction:
+def compile_profile(shape: Shape) -> CompiledFunction:
     """Compile a tip profile ``f(radius, ...) -> height``."""
-    profile = _loop((shape,), "radius, parameters, profile, n", "radius[i]", 0, ("profile",))
+    profile = _write_loop((shape,), "radius, parameters, profile, n", "radius[i]", 0, ("profile",))
     return CompiledFunction(profile, PROFILE, _is_ours(shape))
 
 
 def _is_ours(shape: Shape) -> bool:
     """Whether compiled code may be kept on disk: nobody knows what a user's depends on."""
-    return store.is_ours(_python(shape.function).__code__.co_filename)
+    return store.is_ours(_find_python(shape.function).__code__.co_filename)
 
 
-def _loop(shapes: tuple[Shape, ...], arguments: str, x: str, first: int, results) -> Callable:
+def _write_loop(shapes: tuple[Shape, ...], arguments: str, x: str, first: int, results) -> Callable:
     """Write the function that adds up formulas over an array, as dataclasses write methods.
 
     Parameters start at index ``first``. ``results`` names the array for each result of a formula,
@@ -223,7 +262,7 @@ def _loop(shapes: tuple[Shape, ...], arguments: str, x: str, first: int, results
     known: dict[str, Any] = {"__name__": __name__}
     lines, calls = [f" at = {first}"], []
     for k, (function, count) in enumerate(shapes):
-        known[f"formula_{k}"] = function if _is_compiled(function) else _formula(function)
+        known[f"formula_{k}"] = function if _is_compiled(function) else _compile_formula(function)
         if count is None:
             names = [f"table_{k}"]
             lines.append(f" table_{k} = parameters[at + 1 : at + 1 + int(parameters[at])]")
@@ -240,14 +279,14 @@ def _loop(shapes: tuple[Shape, ...], arguments: str, x: str, first: int, results
             total = " + ".join(f"y{j}_{k}" for k in range(len(shapes)))
             lines.append(f"  {array}[i] = {total}")
     body = "\n".join(lines)
-    codes = [_python(shape.function).__code__ for shape in shapes]
+    codes = [_find_python(shape.function).__code__ for shape in shapes]
     key = body + "".join(f"{c.co_code!r}{c.co_consts!r}{c.co_names!r}" for c in codes)
     name = f"loop_{sha256(key.encode()).hexdigest()[:16]}"
     exec(compile(f"def {name}({arguments}):\n{body}\n", __file__, "exec"), known)
     return known[name]
 
 
-def _formula(function: Callable) -> Callable:
+def _compile_formula(function: Callable) -> Callable:
     return njit(function, **_OPTIONS)
 
 
@@ -255,5 +294,5 @@ def _is_compiled(function: Callable) -> bool:
     return hasattr(function, "py_func")
 
 
-def _python(function: Callable) -> Any:
+def _find_python(function: Callable) -> Any:
     return getattr(function, "py_func", function)

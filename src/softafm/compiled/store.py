@@ -42,7 +42,7 @@ def is_ours(file: str) -> bool:
 
 
 @cache
-def build() -> str:
+def name_build() -> str:
     """Return the name of this build: a hash of all that its compiled code depends on."""
     import llvmlite
     import numba
@@ -55,29 +55,29 @@ def build() -> str:
     parts += [binding.get_host_cpu_features().flatten()]
     parts += [f"{name}={getattr(numba.config, name, None)}" for name in _OPTIONS]
     found = sha256("\0".join(parts).encode())
-    for path in _sources():
+    for path in _list_sources():
         found.update(f"\0{path.relative_to(PACKAGE).as_posix()}\0".encode())
         found.update(sha256(path.read_bytes()).digest())
     return found.hexdigest()
 
 
-def _sources() -> list[Path]:
+def _list_sources() -> list[Path]:
     return sorted(path for room in ROOMS for path in (PACKAGE / room).rglob("*.py"))
 
 
 @cache
-def folder() -> Path | None:
+def find_folder() -> Path | None:
     """Return where this build's code is kept, None if there is no place that only we can write.
 
     It is in the folder that NUMBA_CACHE_DIR names, else among the user's caches, else, for homes
     that cannot be written, among temporary files.
     """
-    for shelf in _shelves():
+    for shelf in _list_shelves():
         try:
-            _own(shelf)
-            place = shelf / build()
+            _make_own(shelf)
+            place = shelf / name_build()
             new = not place.exists()
-            _own(place)
+            _make_own(place)
         except OSError:
             continue
         if new:
@@ -88,7 +88,7 @@ def folder() -> Path | None:
     return None
 
 
-def _shelves() -> Iterator[Path]:
+def _list_shelves() -> Iterator[Path]:
     """Yield the folders in which builds may stand, best first."""
     user = f"softafm-{os.getuid()}" if hasattr(os, "getuid") else "softafm"
     if chosen := os.environ.get("NUMBA_CACHE_DIR"):
@@ -104,7 +104,7 @@ def _shelves() -> Iterator[Path]:
     yield Path(tempfile.gettempdir()) / user
 
 
-def _own(place: Path) -> None:
+def _make_own(place: Path) -> None:
     """Make a folder if there is none; PermissionError if anyone else may write to it.
 
     What it holds is executed.
@@ -133,13 +133,13 @@ def _remove_unused(shelf: Path) -> None:
 
 
 @contextmanager
-def in_turn() -> Iterator[None]:
+def take_turns() -> Iterator[None]:
     """Let one process of the user at a time compile for this build; not on Windows.
 
     Numba's code for the same sources differs in the order of operations from process to process. So
     whoever waited looks again, and all take what the first one kept.
     """
-    place = folder()
+    place = find_folder()
     try:
         import fcntl
     except ImportError:
@@ -155,7 +155,7 @@ def in_turn() -> Iterator[None]:
 
 def read(name: str) -> bytes | None:
     """Return what is kept under a name, None if there is nothing whole."""
-    place = folder()
+    place = find_folder()
     if place is None:
         return None
     try:
@@ -174,7 +174,7 @@ def write(name: str, content: bytes) -> None:
     OSError
         If there is no folder, or it cannot be written.
     """
-    place = folder()
+    place = find_folder()
     if place is None:
         raise OSError("there is no folder that only you can write to")
     handle, part = tempfile.mkstemp(prefix=f".{name}.", dir=place)

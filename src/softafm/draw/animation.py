@@ -16,11 +16,18 @@ import numpy as np
 
 from softafm.checks.kinds import refuse_non_dataset
 from softafm.checks.validate import positive, whole
-from softafm.draw.scene_parts import SAMPLE_COLOURS, TIP_COLOURS, draw, scales, titles, writers
-from softafm.draw.scenes import require_shapes, scenes_at, view_of, window
+from softafm.draw.scene_parts import (
+    SAMPLE_COLOURS,
+    TIP_COLOURS,
+    choose_scales,
+    draw,
+    make_writers,
+    write_titles,
+)
+from softafm.draw.scenes import choose_view, choose_window, interpolate_scenes, require_shapes
 from softafm.progress import Progress, reporting
 from softafm.results.datasets import write_whole
-from softafm.units.quantities import prefixed
+from softafm.units.quantities import choose_prefix
 
 if TYPE_CHECKING:
     from xarray import Dataset
@@ -36,7 +43,7 @@ _SHORTEST_GIF_FRAME = 0.02  # s; browsers slow shorter ones down to a tenth of a
 _COLOURS = {"past": "#0072B2", "future": "#b3b3b3", "now": "#D55E00"}
 _PAGE_POINTS = 200  # radii a page needs to look smooth
 
-Shown = Callable[[int], None]
+FrameReport = Callable[[int], None]
 
 
 def animate(
@@ -98,40 +105,40 @@ def animate(
             f"frames = {frames}: a .gif shows at most {1 / _SHORTEST_GIF_FRAME:.0f} a second, "
             f"{seconds / _SHORTEST_GIF_FRAME:.0f} in {seconds:g} s"
         )
-    if suffix == ".mp4" and _ffmpeg() is None:
+    if suffix == ".mp4" and _find_ffmpeg() is None:
         raise RuntimeError(
             f"{path}: .mp4 needs the program ffmpeg, which is not installed: install it "
             "(ffmpeg.org, or your system's package ffmpeg), or write .html or .gif"
         )
-    movie = _Movie(result, window(result, start, stop), frames)
+    movie = _Movie(result, choose_window(result, start, stop), frames)
     write = {".mp4": _write_mp4, ".gif": _write_gif, ".html": _write_html}[suffix]
     with reporting(progress) as report:
 
-        def shown(index: int) -> None:
+        def report_frame(index: int) -> None:
             if report is not None:
                 report((index + 1) / frames, "drawing")
 
-        write_whole(path, overwrite, lambda part: write(movie, part, seconds, shown))
+        write_whole(path, overwrite, lambda part: write(movie, part, seconds, report_frame))
 
 
 class _Movie:
     """What every format shows: scenes, the view, the curve of force against time, and its texts."""
 
     def __init__(self, result: "Dataset", times: tuple[float, float], frames: int):
-        self.scenes = scenes = scenes_at(result, np.linspace(*times, frames))
-        self.view = view = view_of(result, *times, _SCENE_SHAPE)
+        self.scenes = scenes = interpolate_scenes(result, np.linspace(*times, frames))
+        self.view = view = choose_view(result, *times, _SCENE_SHAPE)
         time = result["time"].values
         inside = time[(time > times[0]) & (time < times[1])]
         self.curve_time = np.concatenate([times[:1], inside, times[1:]])
-        self.curve_force = scenes_at(result, self.curve_time).force
-        self.in_time, second = prefixed(float(np.abs(self.curve_time).max()), "s")
-        self.in_force, newton = prefixed(float(np.abs(self.curve_force).max()), "N")
-        self.scale = np.array(scales(view))
-        self.titles = (*titles(view), f"Time ({second})", f"Force ({newton})")
-        self.moment, self.strength = writers(scenes)
+        self.curve_force = interpolate_scenes(result, self.curve_time).force
+        self.in_time, second = choose_prefix(float(np.abs(self.curve_time).max()), "s")
+        self.in_force, newton = choose_prefix(float(np.abs(self.curve_force).max()), "N")
+        self.scale = np.array(choose_scales(view))
+        self.titles = (*write_titles(view), f"Time ({second})", f"Force ({newton})")
+        self.moment, self.strength = make_writers(scenes)
 
 
-def _pictures(movie: _Movie, dpi: int, shown: Shown) -> Iterator[np.ndarray]:
+def _draw_frames(movie: _Movie, dpi: int, report_frame: FrameReport) -> Iterator[np.ndarray]:
     """Yield the frames as colours (height, width, 3); only what moves is drawn anew."""
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
@@ -175,18 +182,18 @@ def _pictures(movie: _Movie, dpi: int, shown: Shown) -> Iterator[np.ndarray]:
         for artist in moving:
             artist.axes.draw_artist(artist)
         yield np.asarray(canvas.buffer_rgba())[..., :3].copy()
-        shown(index)
+        report_frame(index)
 
 
-def _write_gif(movie: _Movie, path, seconds: float, shown: Shown) -> None:
+def _write_gif(movie: _Movie, path, seconds: float, report_frame: FrameReport) -> None:
     """Write the frames with one palette for all, for then only what moves takes space."""
     from PIL import Image
 
     palette = Image.new("P", (1, 1))
-    palette.putpalette(_palette())
+    palette.putpalette(_make_palette())
     images = [
         Image.fromarray(picture).quantize(palette=palette, dither=Image.Dither.NONE)
-        for picture in _pictures(movie, _DPI[".gif"], shown)
+        for picture in _draw_frames(movie, _DPI[".gif"], report_frame)
     ]
     ends = np.round(np.linspace(0, 100 * seconds, len(images) + 1))  # a GIF counts in 10 ms
     images[0].save(
@@ -199,7 +206,7 @@ def _write_gif(movie: _Movie, path, seconds: float, shown: Shown) -> None:
     )
 
 
-def _palette() -> list[int]:
+def _make_palette() -> list[int]:
     """Red, green and blue of the colours drawn, and of two blends between any two of them."""
     from matplotlib.colors import to_rgb
 
@@ -209,16 +216,17 @@ def _palette() -> list[int]:
     return np.round(255 * np.concatenate(colours + blends)).astype(int).tolist()
 
 
-def _ffmpeg() -> str | None:
+def _find_ffmpeg() -> str | None:
     return shutil.which("ffmpeg")
 
 
-def _write_mp4(movie: _Movie, path, seconds: float, shown: Shown) -> None:
+def _write_mp4(movie: _Movie, path, seconds: float, report_frame: FrameReport) -> None:
     """Pipe the frames to ffmpeg."""
     dpi = _DPI[".mp4"]
     width, height = (round(dpi * inches) for inches in _SIZE)
     rate = f"{movie.scenes.time.size / seconds:.9g}"
-    command = [_ffmpeg() or "ffmpeg", "-loglevel", "error", "-f", "rawvideo", "-pix_fmt", "rgb24"]
+    command = [_find_ffmpeg() or "ffmpeg", "-loglevel", "error"]
+    command += ["-f", "rawvideo", "-pix_fmt", "rgb24"]
     command += ["-video_size", f"{width}x{height}", "-framerate", rate, "-i", "pipe:0"]
     command += ["-vcodec", "h264", "-pix_fmt", "yuv420p", "-movflags", "+faststart"]
     command += ["-f", "mp4", "-y", str(path)]
@@ -226,7 +234,7 @@ def _write_mp4(movie: _Movie, path, seconds: float, shown: Shown) -> None:
         process = subprocess.Popen(command, stdin=subprocess.PIPE, stdout=said, stderr=said)
         assert process.stdin is not None
         with suppress(BrokenPipeError), process:  # then ffmpeg has ended, and said why
-            for picture in _pictures(movie, dpi, shown):
+            for picture in _draw_frames(movie, dpi, report_frame):
                 process.stdin.write(picture.tobytes())
             process.stdin.close()
         if process.returncode != 0:
@@ -236,7 +244,7 @@ def _write_mp4(movie: _Movie, path, seconds: float, shown: Shown) -> None:
             raise RuntimeError(f"ffmpeg could not write the movie: {reason}")
 
 
-def _write_html(movie: _Movie, path, seconds: float, shown: Shown) -> None:
+def _write_html(movie: _Movie, path, seconds: float, report_frame: FrameReport) -> None:
     """Write a page that draws the shapes itself, from whole numbers in fractions of a pixel."""
     scenes, view = movie.scenes, movie.view
     in_radius, in_height = movie.scale.tolist()
@@ -246,10 +254,10 @@ def _write_html(movie: _Movie, path, seconds: float, shown: Shown) -> None:
     seen = np.union1d(seen[:: ceil(seen.size / _PAGE_POINTS)], seen[-1:])
     quantum = 2e-4 * (view.top - view.bottom)
 
-    def rounded(values):
+    def quantise(values):
         return np.round(values / quantum).astype(int).tolist()
 
-    def short(values, digits=5):
+    def shorten(values, digits=5):
         return [float(f"{value:.{digits}g}") for value in values]
 
     data = {
@@ -259,19 +267,19 @@ def _write_html(movie: _Movie, path, seconds: float, shown: Shown) -> None:
         "top": in_height * view.top,
         "stretch": view.stretch * in_radius / in_height,
         "quantum": in_height * quantum,
-        "r": short(in_radius * scenes.r[seen]),
-        "tip": rounded(scenes.tip[0, seen] - scenes.tip[0, 0]),
-        "apex": rounded(scenes.tip[:, 0]),
-        "surface": rounded(scenes.surface[:, seen]),
-        "time": short(in_time * scenes.time, 9),
-        "force": short(in_force * scenes.force),
+        "r": shorten(in_radius * scenes.r[seen]),
+        "tip": quantise(scenes.tip[0, seen] - scenes.tip[0, 0]),
+        "apex": quantise(scenes.tip[:, 0]),
+        "surface": quantise(scenes.surface[:, seen]),
+        "time": shorten(in_time * scenes.time, 9),
+        "force": shorten(in_force * scenes.force),
         "moment": [movie.moment(time) for time in scenes.time],
         "strength": [movie.strength(value) for value in scenes.force],
-        "curve": [short(in_time * movie.curve_time, 9), short(in_force * movie.curve_force)],
+        "curve": [shorten(in_time * movie.curve_time, 9), shorten(in_force * movie.curve_force)],
         "titles": movie.titles,
         "colours": {**_COLOURS, "tip": TIP_COLOURS, "sample": SAMPLE_COLOURS},
     }
     page = resources.files("softafm.draw").joinpath("player.html").read_text(encoding="utf-8")
     text = json.dumps(data, separators=(",", ":"), ensure_ascii=False).replace("<", "\\u003c")
     Path(path).write_text(page.replace("/*DATA*/", text), encoding="utf-8")
-    shown(scenes.time.size - 1)
+    report_frame(scenes.time.size - 1)

@@ -13,16 +13,16 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.ticker import MultipleLocator
 
-from softafm.draw.approach_data import AXES, DIRECTIONS, Curves, curves_of, jumps_of
+from softafm.draw.approach_data import AXES, DIRECTIONS, Curves, collect_curves, find_jumps
 from softafm.draw.style import (
     APPROACH,
     RETRACT,
-    colours,
-    factor_of,
-    label_of,
-    run_entries,
-    stroke_entries,
+    choose_colours,
+    choose_factor,
+    make_run_entries,
+    make_stroke_entries,
     tidy,
+    write_label,
 )
 
 _STABLE: dict[str, Any] = {"marker": "o", "markersize": 3.5, "linestyle": "none"}
@@ -31,7 +31,7 @@ _JUMP: dict[str, Any] = {"arrowstyle": "-|>", "linewidth": 0.8, "shrinkA": 0, "s
 _LEFT_OUT: Final = "0.55"
 
 
-def approach_curve(runs: list[xr.Dataset], names: list[str]) -> Figure:
+def draw_approach_curve(runs: list[xr.Dataset], names: list[str]) -> Figure:
     """Phase, dissipation and virial against the amplitude ratio; how deep the tip goes at a height.
 
     Lines are the sweeps and arrows their jumps; dots are the solutions at the amplitude ratios.
@@ -40,8 +40,8 @@ def approach_curve(runs: list[xr.Dataset], names: list[str]) -> Figure:
         raise ValueError("a result holds no height for any amplitude: there is nothing to draw")
     figure = Figure(figsize=(9.6, 7.2), dpi=150, layout="constrained")
     (phase, dissipation), (virial, lowest) = figure.subplots(2, 2)
-    curves = [curves_of(run) for run in runs]
-    jumps = [{direction: jumps_of(run, direction) for direction in DIRECTIONS} for run in runs]
+    curves = [collect_curves(run) for run in runs]
+    jumps = [{direction: find_jumps(run, direction) for direction in DIRECTIONS} for run in runs]
     _draw(phase, curves, jumps, "ratio", "phase")
     _draw(dissipation, curves, jumps, "ratio", "dissipation")
     _draw(virial, curves, jumps, "ratio", "virial")
@@ -51,7 +51,11 @@ def approach_curve(runs: list[xr.Dataset], names: list[str]) -> Figure:
     _mark(virial, 0, "", "")
     _mark(lowest, 0, "above", "below")
     dissipation.set_ylim(bottom=min(0.0, dissipation.get_ylim()[0]))
-    entries = [*run_entries(names), *stroke_entries(len(runs)), *_solution_entries(len(runs))]
+    entries = [
+        *make_run_entries(names),
+        *make_stroke_entries(len(runs)),
+        *_make_solution_entries(len(runs)),
+    ]
     columns = min(len(entries), 6)
     figure.legend(handles=entries, loc="outside lower center", ncols=columns, frameon=False)
     return figure
@@ -64,8 +68,8 @@ def _draw(ax: Axes, runs: list[Curves], jumps: list[dict], abscissa: str, ordina
         title, unit = AXES[name]
         scale = 1.0
         if unit is not None:
-            scale = factor_of(*(part[name] for run in runs for part in run.values()))
-            title = label_of(title, unit, scale)
+            scale = choose_factor(*(part[name] for run in runs for part in run.values()))
+            title = write_label(title, unit, scale)
         scales.append(scale)
         label(title, fontsize=11)
     tidy(ax)
@@ -74,7 +78,7 @@ def _draw(ax: Axes, runs: list[Curves], jumps: list[dict], abscissa: str, ordina
             kind: (scales[0] * part[abscissa], scales[1] * part[ordinate])
             for kind, part in curves.items()
         }
-        own = colours(index, len(runs))
+        own = choose_colours(index, len(runs))
         dots = _LEFT_OUT if len(runs) == 1 else own[0]
         ax.plot(*drawn["stable"], color=dots, zorder=1.5, **_STABLE)
         ax.plot(*drawn["unstable"], color=dots, zorder=1.5, **_UNSTABLE)
@@ -106,7 +110,7 @@ def _mark(ax: Axes, level: float, above: str, below: str) -> None:
         )
 
 
-def _solution_entries(count: int) -> list[Line2D]:
+def _make_solution_entries(count: int) -> list[Line2D]:
     """Legend entries of solutions by stability."""
     colour = _LEFT_OUT if count == 1 else "black"
     return [

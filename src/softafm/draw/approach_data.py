@@ -18,7 +18,7 @@ AXES = {
     "height": ("Mean height of the tip, Z", "m"),
     "lowest": ("Lowest height of the tip, Z − A", "m"),
 }
-"""Title of the axis of what ``curves_of`` returns, and the unit if it takes prefixes."""
+"""Title of the axis of what ``collect_curves`` returns, and the unit if it takes prefixes."""
 
 Curves = dict[str, dict[str, np.ndarray]]
 _OBSERVABLES = ("phase", "dissipation", "virial", "force_max")
@@ -26,7 +26,7 @@ _MOST_SOLUTIONS = 60
 _SMALLEST, _STEEPER = 0.02, 4.0
 
 
-def curves_of(result: "Dataset") -> Curves:
+def collect_curves(result: "Dataset") -> Curves:
     """Return what is drawn of an approach curve, SI, each curve by the names in ``AXES``.
 
     The sweeps are called as in ``DIRECTIONS``, the solutions ``"stable"`` and ``"unstable"``; of
@@ -55,7 +55,7 @@ def curves_of(result: "Dataset") -> Curves:
     return curves
 
 
-def jumps_of(result: "Dataset", direction: str) -> list[tuple[int, int]]:
+def find_jumps(result: "Dataset", direction: str) -> list[tuple[int, int]]:
     """Return the jumps of an approach curve on ``"approach"`` or ``"retract"``.
 
     Each is the pair of neighbouring indices of ``sweep_height`` before and after it. A jump is a

@@ -8,7 +8,7 @@ from softafm.checks.kinds import refuse_other
 from softafm.contact import Contact
 from softafm.draw.law import draw_laws
 from softafm.draw.sample import SAMPLES, draw_moduli, draw_steps, times_of
-from softafm.draw.tip import draw_profiles, extent_of
+from softafm.draw.tip import choose_extent, draw_profiles
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -51,7 +51,7 @@ def plot_contact(contact: Contact) -> "Figure":
     potential = figure.add_subplot(grid[0, 4:])
     steps = figure.add_subplot(grid[1, :3], title=f"Sample: {sample.kind}")
     moduli = figure.add_subplot(grid[1, 3:])
-    draw_profiles(profile, [tip], extent_of([tip]), [tip.kind])
+    draw_profiles(profile, [tip], choose_extent([tip]), [tip.kind])
     _fill(profile)
     draw_laws(pressure, potential, [surface], [surface.kind])
     time = np.geomspace(*times_of(sample), SAMPLES)

@@ -5,6 +5,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from softafm.results.content import VARIABLES
+
 if TYPE_CHECKING:
     from xarray import Dataset
 
@@ -17,14 +19,25 @@ AXES = {
     "contact_radius": ("Contact radius", "m"),
 }
 """Title and unit of the axis of a variable."""
+_UNPREFIXED = {"1": "", "degree": " (°)"}
+"""What is added to the title of an axis whose unit takes no prefix."""
 
 
-def moved(run: "Dataset") -> str:
+def axis_of(name: str) -> tuple[str, str | None]:
+    """Return the title of the axis of a variable of results, and its unit if it takes prefixes."""
+    if name in AXES:
+        return AXES[name]
+    unit, words = VARIABLES[name]
+    title = words[:1].upper() + words[1:]
+    return (f"{title}{_UNPREFIXED[unit]}", None) if unit in _UNPREFIXED else (title, unit)
+
+
+def name_moved(run: "Dataset") -> str:
     """Return what follows the motion: the base of a lever, or else the tip."""
     return "base_height" if "base_height" in run else "tip_height"
 
 
-def strokes(height: np.ndarray) -> Iterator[tuple[slice, bool]]:
+def split_strokes(height: np.ndarray) -> Iterator[tuple[slice, bool]]:
     """Yield the strokes of a motion as (samples, whether the tip falls).
 
     A stroke ends at its extreme height once the motion has reversed by a fiftieth of its range:
@@ -44,7 +57,7 @@ def strokes(height: np.ndarray) -> Iterator[tuple[slice, bool]]:
     yield slice(start, height.size), falling
 
 
-def felt(runs: Sequence["Dataset"], *variables: str) -> tuple[float, float]:
+def find_force(runs: Sequence["Dataset"], *variables: str) -> tuple[float, float]:
     """Return where the force exceeds a hundredth of its largest, with a margin.
 
     The range is that of all the variables in all runs.

@@ -52,10 +52,10 @@ def plot_surface(
     """
     from matplotlib.figure import Figure
 
-    from softafm.draw.style import labels_of
+    from softafm.draw.style import choose_labels
 
     drawn = list_of("laws", laws, SurfaceLaw, "a surface law such as softafm.LennardJones")
-    names = labels_of("law", drawn, labels, (law.kind for law in drawn))
+    names = choose_labels("law", drawn, labels, (law.kind for law in drawn))
     figure = Figure(figsize=(9.6, 4.2), dpi=150, layout="constrained")
     axes = figure.subplots(1, 2, sharex=True)
     draw_laws(axes[0], axes[1], drawn, names, largest_gap)
@@ -74,9 +74,9 @@ def draw_laws(
     largest_gap: float | None = None,
 ) -> None:
     """Draw pressures and potentials on their axes; mark the well of a law that stands alone."""
-    from softafm.draw.style import factor_of
+    from softafm.draw.style import choose_factor
 
-    start, end = _window(laws)
+    start, end = _choose_window(laws)
     gap = np.linspace(start, end if largest_gap is None else largest_gap, 2001)
     wells = [law for law in laws if law.attracts]
     tensions = [law.largest_tension for law in wells]
@@ -85,14 +85,14 @@ def draw_laws(
     potentials = [law.potential(gap) for law in laws]
     _draw(potential, gap, potentials, names, works, ("Potential", "J/m²"))
     if len(laws) == 1 and wells:
-        _mark(pressure, potential, laws[0], factor_of(gap))
+        _mark(pressure, potential, laws[0], choose_factor(gap))
 
 
-def _window(laws: Sequence[SurfaceLaw]) -> tuple[float, float]:
+def _choose_window(laws: Sequence[SurfaceLaw]) -> tuple[float, float]:
     """Return the gaps between which the laws differ from hard contact and from nothing."""
     wells = [law for law in laws if law.attracts]
     if wells:
-        widths = [_width(law) for law in wells]
+        widths = [_measure_width(law) for law in wells]
         start = min(law.equilibrium_gap - 0.3 * w for law, w in zip(wells, widths, strict=True))
         end = max(
             law.gap_of_largest_tension + _EXTENT * w for law, w in zip(wells, widths, strict=True)
@@ -104,49 +104,49 @@ def _window(laws: Sequence[SurfaceLaw]) -> tuple[float, float]:
     return 0.02 * float(end), float(end)
 
 
-def _width(law: SurfaceLaw) -> float:
+def _measure_width(law: SurfaceLaw) -> float:
     """Return the width of a well, m: the range, if it takes work to leave it."""
     return law.range if law.work_of_adhesion > 0 else law.gap_of_largest_tension
 
 
 def _draw(ax: "Axes", gap, curves, names, depths, title: tuple[str, str]) -> None:
     """Draw curves against the gap, down to the deepest well and up as far again."""
-    from softafm.draw.style import factor_of, label_of, line_of, tidy
+    from softafm.draw.style import choose_factor, choose_line, tidy, write_label
 
     highest = max(float(curve.max()) for curve in curves)
     depth = max(depths, default=0.0)
-    y_scale = factor_of(np.array([depth or highest]))
-    x_scale = factor_of(gap)
+    y_scale = choose_factor(np.array([depth or highest]))
+    x_scale = choose_factor(gap)
     ax.axhline(0, color="0.75", linewidth=0.8, zorder=0)
     for index, (curve, name) in enumerate(zip(curves, names, strict=True)):
-        ax.plot(x_scale * gap, y_scale * curve, label=name, **line_of(index))
+        ax.plot(x_scale * gap, y_scale * curve, label=name, **choose_line(index))
     if depth > 0:
         ax.set_ylim(-1.35 * y_scale * depth, 0.75 * y_scale * depth)
     ax.set_xlim(x_scale * gap[0], x_scale * gap[-1])
-    ax.set_xlabel(label_of("Gap", "m", x_scale), fontsize=11)
-    ax.set_ylabel(label_of(*title, y_scale), fontsize=11)
+    ax.set_xlabel(write_label("Gap", "m", x_scale), fontsize=11)
+    ax.set_ylabel(write_label(*title, y_scale), fontsize=11)
     tidy(ax)
 
 
 def _mark(pressure: "Axes", potential: "Axes", law: SurfaceLaw, x_scale: float) -> None:
     """Mark and name equilibrium gap, largest tension and work of adhesion."""
-    from softafm.draw.style import factor_of, quantity
+    from softafm.draw.style import choose_factor, typeset
 
     tension, work = law.largest_tension, law.work_of_adhesion
     rest, steepest = law.equilibrium_gap, law.gap_of_largest_tension
     for ax, gap, value, text in (
-        (pressure, rest, 0.0, f"equilibrium gap {quantity(rest, 'm')}"),
+        (pressure, rest, 0.0, f"equilibrium gap {typeset(rest, 'm')}"),
         (
             pressure,
             steepest,
-            -factor_of(np.array([tension])) * tension,
-            f"largest tension {quantity(tension, 'Pa')}\nat {quantity(steepest, 'm')}",
+            -choose_factor(np.array([tension])) * tension,
+            f"largest tension {typeset(tension, 'Pa')}\nat {typeset(steepest, 'm')}",
         ),
         (
             potential,
             rest,
-            -factor_of(np.array([work])) * work,
-            f"work of adhesion {quantity(work, 'J/m²')}",
+            -choose_factor(np.array([work])) * work,
+            f"work of adhesion {typeset(work, 'J/m²')}",
         ),
     ):
         ax.plot(x_scale * gap, value, **_MARK)

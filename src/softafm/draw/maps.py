@@ -7,7 +7,7 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from softafm.checks.kinds import list_of
-from softafm.draw.style import factor_of, label_of, labels_of, prefix_of
+from softafm.draw.style import choose_factor, choose_labels, find_prefix, write_label
 
 if TYPE_CHECKING:
     from xarray import Dataset
@@ -65,7 +65,7 @@ def plot_map(
     from xarray import Dataset
 
     runs = list_of("maps", maps, Dataset, "a result of softafm, an xarray.Dataset")
-    titles = labels_of("dataset", runs, labels, ("" for _ in runs))
+    titles = choose_labels("dataset", runs, labels, ("" for _ in runs))
     if names is None:
         names = _USUAL.get(str(runs[0].attrs.get("mode")))
         if names is None:
@@ -78,7 +78,7 @@ def plot_map(
         for name in names:
             if name not in known:
                 raise ValueError(f"names: '{name}' is no map; those of the dataset: {known}")
-    tall = max(_depth(run) / _width(run) for run in runs)
+    tall = max(_measure_depth(run) / _measure_width(run) for run in runs)
     panel = 3.3
     size = (len(names) * (panel + 0.9), len(runs) * (panel * min(max(tall, 0.3), 3) + 0.6))
     figure = Figure(figsize=size, dpi=150, layout="constrained")
@@ -100,31 +100,31 @@ def _draw(figure, ax, run: "Dataset", name: str) -> None:
     values, unit = variable.values, variable.attrs.get("units", "")
     if name in ("topography", "mean_height", "lowest_height", "sample_height"):
         values = values - np.nanmin(values) if np.isfinite(values).any() else values
-    factor = 1.0 if unit in _NO_PREFIX else factor_of(values)
-    along = factor_of(np.array([_width(run), _depth(run)]))
-    extent = (0, along * _width(run), along * _depth(run), 0)
+    factor = 1.0 if unit in _NO_PREFIX else choose_factor(values)
+    along = choose_factor(np.array([_measure_width(run), _measure_depth(run)]))
+    extent = (0, along * _measure_width(run), along * _measure_depth(run), 0)
     colours = _COLOURS.get(name, _USUAL_COLOURS)
     ax.set_facecolor("lightsteelblue")
     image = ax.imshow(
         np.ma.masked_invalid(factor * values), cmap=colours, extent=extent, interpolation="nearest"
     )
     title = _TITLES.get(name, variable.attrs.get("long_name", name))
-    shown = _NO_PREFIX[unit] if unit in _NO_PREFIX else f"{prefix_of(factor)}{unit}"
+    shown = _NO_PREFIX[unit] if unit in _NO_PREFIX else f"{find_prefix(factor)}{unit}"
     ax.set_title(f"{title} ({shown})" if shown else title, fontsize=11)
-    ax.set_xlabel(label_of("x", "m", along))
-    ax.set_ylabel(label_of("y", "m", along))
+    ax.set_xlabel(write_label("x", "m", along))
+    ax.set_ylabel(write_label("y", "m", along))
     ax.tick_params(direction="out")
     figure.colorbar(image, ax=ax, shrink=0.85, pad=0.02)
 
 
-def _width(run: "Dataset") -> float:
-    return _extent(run["x"].values)
+def _measure_width(run: "Dataset") -> float:
+    return _measure_extent(run["x"].values)
 
 
-def _depth(run: "Dataset") -> float:
-    return _extent(run["y"].values)
+def _measure_depth(run: "Dataset") -> float:
+    return _measure_extent(run["y"].values)
 
 
-def _extent(centres: np.ndarray) -> float:
+def _measure_extent(centres: np.ndarray) -> float:
     """Extent of pixels of which these are the centres, the first half a pixel from 0."""
     return float(centres[0] + centres[-1])

@@ -77,17 +77,19 @@ def times_of(sample: Solid, measured: tuple | None = None) -> tuple[float, float
 
 def draw_steps(ax: "Axes", sample: Solid, time: np.ndarray) -> None:
     """Draw relaxation modulus and creep compliance at ``time`` (s), rising, with an axis each."""
-    from softafm.draw.style import factor_of, label_of, prefix_of
+    from softafm.draw.style import choose_factor, find_prefix, write_label
 
     against_compliance = ax.twinx()
     relaxation, creep = sample.relaxation_modulus(time), sample.creep_compliance(time)
-    factor = factor_of(relaxation)
+    factor = choose_factor(relaxation)
     solid, dashed = _lines()
     ax.plot(time, factor * relaxation, **solid)
-    ax.set_ylabel(label_of("Relaxation modulus", "Pa", factor), fontsize=11, color=solid["color"])
-    factor = factor_of(1 / creep)
+    ax.set_ylabel(
+        write_label("Relaxation modulus", "Pa", factor), fontsize=11, color=solid["color"]
+    )
+    factor = choose_factor(1 / creep)
     against_compliance.plot(time, creep / factor, **dashed)
-    title = f"Creep compliance (1/{prefix_of(factor)}Pa)"
+    title = f"Creep compliance (1/{find_prefix(factor)}Pa)"
     against_compliance.set_ylabel(title, fontsize=11, color=dashed["color"])
     _logarithmic(ax, "Time", "s", right=False)
     _logarithmic(against_compliance, "Time", "s", right=True)
@@ -95,11 +97,11 @@ def draw_steps(ax: "Axes", sample: Solid, time: np.ndarray) -> None:
 
 def draw_moduli(ax: "Axes", sample: Solid, time: np.ndarray, measured: tuple | None = None) -> None:
     """Draw storage and loss modulus at ω = 1/``time`` (s, rising), and measured ones as points."""
-    from softafm.draw.style import HOLLOW, factor_of, label_of
+    from softafm.draw.style import HOLLOW, choose_factor, write_label
 
     frequency = 1 / (2 * pi * time[::-1])
     moduli = sample.storage_modulus(frequency), sample.loss_modulus(frequency)
-    factor = factor_of(*moduli, *(measured[1:] if measured else ()))
+    factor = choose_factor(*moduli, *(measured[1:] if measured else ()))
     for index, name in enumerate(("storage modulus E′", "loss modulus E″")):
         line = _lines()[index]
         ax.plot(frequency, factor * moduli[index], label=name, **line)
@@ -107,16 +109,16 @@ def draw_moduli(ax: "Axes", sample: Solid, time: np.ndarray, measured: tuple | N
             label = f"{name.split()[0]}, measured"
             points = factor * measured[1 + index]
             ax.plot(measured[0], points, color=line["color"], label=label, **HOLLOW)
-    ax.set_ylabel(label_of("Modulus", "Pa", factor), fontsize=11)
+    ax.set_ylabel(write_label("Modulus", "Pa", factor), fontsize=11)
     _logarithmic(ax, "Frequency", "Hz")
     ax.legend(frameon=False)
 
 
 def _lines():
     """Styles of what is stored and what is lost: by colour and by dashes."""
-    from softafm.draw.style import RETRACT, line_of
+    from softafm.draw.style import RETRACT, choose_line
 
-    return line_of(0), {**line_of(1), "linestyle": RETRACT}
+    return choose_line(0), {**choose_line(1), "linestyle": RETRACT}
 
 
 def _logarithmic(ax: "Axes", title: str, unit: str, right: bool | None = None) -> None:

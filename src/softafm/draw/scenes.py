@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from softafm.checks.validate import finite
-from softafm.units.quantities import readable
+from softafm.units.quantities import write_quantity
 
 if TYPE_CHECKING:
     from xarray import Dataset
@@ -62,7 +62,7 @@ def require_shapes(result: "Dataset") -> None:
         )
 
 
-def window(
+def choose_window(
     result: "Dataset",
     start: float | None = None,
     stop: float | None = None,
@@ -89,10 +89,12 @@ def window(
     low = max(given.get("start", first), first)
     high = min(given.get("stop", last), last)
     if not low < high:
-        written = ", ".join(f"{name} = {readable(value, 's')}" for name, value in given.items())
+        written = ", ".join(
+            f"{name} = {write_quantity(value, 's')}" for name, value in given.items()
+        )
         raise ValueError(
-            f"{written}: must be in order and overlap the run, from {readable(first, 's')} "
-            f"to {readable(last, 's')}"
+            f"{written}: must be in order and overlap the run, from {write_quantity(first, 's')} "
+            f"to {write_quantity(last, 's')}"
         )
     if start is None and stop is None and result.sizes.get("cycle", 1) > 1:
         low = last - (last - first) / result.sizes["cycle"]
@@ -101,7 +103,7 @@ def window(
     strength = np.abs(force)
     if strength.max(initial=0.0) > 0:
         felt = time[strength >= 0.01 * strength.max()]
-        moves = np.cumsum(changes(force, result["deformation"].values[inside]))
+        moves = np.cumsum(measure_changes(force, result["deformation"].values[inside]))
         rest = float(time[1:][moves >= 0.995 * moves[-1]][0]) if moves.size else felt[-1]
         end = np.clip(rest, felt[-1], 2 * felt[-1] - felt[0])
         around = margin * (end - felt[0])
@@ -110,7 +112,7 @@ def window(
     return low, high
 
 
-def changes(force: np.ndarray, surface: np.ndarray) -> np.ndarray:
+def measure_changes(force: np.ndarray, surface: np.ndarray) -> np.ndarray:
     """How far force and surface move in each step, as parts of their ranges, summed."""
     moves = np.zeros(max(force.size - 1, 0))
     if moves.size and (largest := np.ptp(force)) > 0:
@@ -120,12 +122,12 @@ def changes(force: np.ndarray, surface: np.ndarray) -> np.ndarray:
     return moves
 
 
-def jumping_steps(time: np.ndarray, jumps: np.ndarray) -> np.ndarray:
+def find_jumping_steps(time: np.ndarray, jumps: np.ndarray) -> np.ndarray:
     """Tell which steps (n - 1,) between instants (n,) hold an elastic jump."""
     return np.isin(np.arange(1, time.size), np.searchsorted(time, jumps))
 
 
-def scenes_at(result: "Dataset", instants: np.ndarray) -> Scenes:
+def interpolate_scenes(result: "Dataset", instants: np.ndarray) -> Scenes:
     """Interpolate shapes and force linearly between the steps of a run.
 
     Over an elastic jump nothing is interpolated: all stays as it was until the jump has happened.
@@ -134,7 +136,7 @@ def scenes_at(result: "Dataset", instants: np.ndarray) -> Scenes:
     after = np.clip(np.searchsorted(time, instants, side="right"), 1, time.size - 1)
     before = after - 1
     share = (instants - time[before]) / (time[after] - time[before])
-    jumps = jumping_steps(time, result["jump_time"].values)
+    jumps = find_jumping_steps(time, result["jump_time"].values)
     share = np.where(jumps[before] & (share < 1), 0.0, share)
 
     def at(values):
@@ -145,14 +147,14 @@ def scenes_at(result: "Dataset", instants: np.ndarray) -> Scenes:
     return Scenes(
         time=np.asarray(instants, float),
         force=at(result["force"].values),
-        velocity=at(_velocity(time, result["tip_height"].values, jumps)),
+        velocity=at(_estimate_velocity(time, result["tip_height"].values, jumps)),
         r=result["r"].values,
         tip=at(result["gap"].values) + surface,
         surface=surface,
     )
 
 
-def _velocity(time, height, jumps) -> np.ndarray:
+def _estimate_velocity(time, height, jumps) -> np.ndarray:
     """Velocity at every instant, the mean of the steps before and after; a jump is no motion."""
     slope = np.where(jumps, 0.0, np.diff(height) / np.diff(time))
     smooth = np.where(jumps, 0.0, 1.0)
@@ -160,7 +162,7 @@ def _velocity(time, height, jumps) -> np.ndarray:
     return total / np.maximum(count, 1.0)
 
 
-def view_of(result: "Dataset", start: float, stop: float, shape: float) -> View:
+def choose_view(result: "Dataset", start: float, stop: float, shape: float) -> View:
     """Return the view that holds the contact between two times, for a picture of this shape.
 
     ``shape`` is the width of the picture over its height. The view reaches out two contact radii

@@ -7,15 +7,15 @@ import numpy as np
 
 from softafm.checks.kinds import refuse_non_dataset
 from softafm.checks.validate import whole
-from softafm.draw.scene_parts import draw, titles, writers
+from softafm.draw.scene_parts import draw, make_writers, write_titles
 from softafm.draw.scenes import (
     Scenes,
-    changes,
-    jumping_steps,
+    choose_view,
+    choose_window,
+    find_jumping_steps,
+    interpolate_scenes,
+    measure_changes,
     require_shapes,
-    scenes_at,
-    view_of,
-    window,
 )
 
 if TYPE_CHECKING:
@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 _LETTERS = "abcdefghijklmnopqrstuvwxyz"
 _COLUMNS = 6
 _PLAIN = 0.3
-"""Change of force and surface, as ``changes`` counts it, from which a jump gets two pictures."""
+"""Change of force and surface (``measure_changes``) from which a jump gets two pictures."""
 
 
 def plot_profiles(
@@ -66,13 +66,13 @@ def plot_profiles(
     refuse_non_dataset("result", result)
     require_shapes(result)
     whole("frames", frames, 2, len(_LETTERS))
-    instants = instants_of(result, frames, *window(result, start, stop, margin=0.05))
+    instants = choose_instants(result, frames, *choose_window(result, start, stop, margin=0.05))
     columns = min(_COLUMNS, ceil(frames / 2))
     rows = ceil(frames / columns)
     figure = Figure(figsize=(1.0 + 1.9 * columns, 0.7 + 1.75 * rows), dpi=150, layout="constrained")
     grid = figure.subplots(rows, columns, sharex=True, sharey=True, squeeze=False)
-    scenes = scenes_at(result, instants)
-    view = view_of(result, instants[0], instants[-1], shape=1.15)
+    scenes = interpolate_scenes(result, instants)
+    view = choose_view(result, instants[0], instants[-1], shape=1.15)
     rest = 0.03 * np.abs(scenes.velocity).max()
     for index, ax in enumerate(grid.flat):
         if index >= frames:
@@ -81,20 +81,20 @@ def plot_profiles(
         draw(ax, scenes, index, view)
         _annotate(ax, scenes, index, rest)
         ax.tick_params(labelsize=8, direction="in", top=True, right=True)
-    across, along = titles(view)
+    across, along = write_titles(view)
     figure.supxlabel(across, size=10)
     figure.supylabel(along, size=10)
     return figure
 
 
-def instants_of(result: "Dataset", frames: int, start: float, stop: float) -> np.ndarray:
+def choose_instants(result: "Dataset", frames: int, start: float, stop: float) -> np.ndarray:
     """Choose instants, half of them down to the lowest tip height, closer where more happens."""
     time, height = result["time"].values, result["tip_height"].values
     inside = time[(time > start) & (time < stop)]
     times = np.concatenate([[start], inside, [stop]])
-    scenes = scenes_at(result, times)
-    change = changes(scenes.force, scenes.surface)
-    jumps = jumping_steps(times, result["jump_time"].values)
+    scenes = interpolate_scenes(result, times)
+    change = measure_changes(scenes.force, scenes.surface)
+    jumps = find_jumping_steps(times, result["jump_time"].values)
     smooth = np.where(jumps, 0.0, change)
     pace = smooth / (smooth.sum() or 1.0) + 0.5 * np.diff(times) / (stop - start)
     way = np.concatenate([[0.0], np.cumsum(pace)])
@@ -124,7 +124,7 @@ def _show_both_sides(instants, before: float, after: float, lowest: float) -> No
 
 def _annotate(ax: "Axes", scenes: Scenes, index: int, rest: float) -> None:
     """Write letter, instant and force into a picture, and draw the arrow of the tip's motion."""
-    moment, force = writers(scenes)
+    moment, force = make_writers(scenes)
     place: dict[str, Any] = {"transform": ax.transAxes, "fontsize": 8, "zorder": 4}
     letter = f"({_LETTERS[index]}) {moment(scenes.time[index])}"
     ax.text(0.04, 0.04, letter, va="bottom", **place)

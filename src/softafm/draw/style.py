@@ -9,7 +9,7 @@ from matplotlib.axes import Axes
 from matplotlib.lines import Line2D
 from matplotlib.ticker import EngFormatter, MaxNLocator
 
-from softafm.units.quantities import readable
+from softafm.units.quantities import write_quantity
 
 # Okabe and Ito's palette: told apart under every common colour blindness, and in grey.
 COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000")
@@ -26,7 +26,7 @@ PREFIXES = EngFormatter.ENG_PREFIXES
 _STYLES: Final = (APPROACH, RETRACT)
 
 
-def labels_of(
+def choose_labels(
     noun: str, things: Sequence, labels: Sequence[str] | None, usual: Iterable[str]
 ) -> list[str]:
     """Return a label for each thing to draw, the usual ones by default.
@@ -44,53 +44,53 @@ def labels_of(
     return names
 
 
-def line_of(index: int) -> dict[str, Any]:
+def choose_line(index: int) -> dict[str, Any]:
     """Style of one of several lines: a colour each, and dashes when all were used."""
     style = _STYLES[index // len(COLOURS) % len(_STYLES)]
     return {"color": COLOURS[index % len(COLOURS)], "linestyle": style, "linewidth": 1.5}
 
 
-def colours(index: int, count: int) -> tuple[str, str]:
+def choose_colours(index: int, count: int) -> tuple[str, str]:
     """Colours of approach and retract: one a run, but two for a run that stands alone."""
     if count == 1:
         return COLOURS[0], COLOURS[1]
     return COLOURS[index % len(COLOURS)], COLOURS[index % len(COLOURS)]
 
 
-def run_entries(names: list[str]) -> list[Line2D]:
+def make_run_entries(names: list[str]) -> list[Line2D]:
     """Legend entries of runs by colour; none for a run that stands alone."""
     if len(names) == 1:
         return []
     return [
-        Line2D([], [], color=colours(index, len(names))[0], linewidth=2.5, label=name)
+        Line2D([], [], color=choose_colours(index, len(names))[0], linewidth=2.5, label=name)
         for index, name in enumerate(names)
     ]
 
 
-def stroke_entries(count: int) -> list[Line2D]:
+def make_stroke_entries(count: int) -> list[Line2D]:
     """Legend entries of approach and retract, for so many runs."""
-    down, up = colours(0, 1) if count == 1 else ("black", "black")
+    down, up = choose_colours(0, 1) if count == 1 else ("black", "black")
     return [
         Line2D([], [], color=down, linestyle=APPROACH, label="approach"),
         Line2D([], [], color=up, linestyle=RETRACT, label="retract"),
     ]
 
 
-def factor_of(*arrays: np.ndarray) -> float:
+def choose_factor(*arrays: np.ndarray) -> float:
     """Factor from SI to the prefix that suits the largest value; NaN do not count."""
     largest = max(float(np.max(np.abs(a), initial=0.0, where=np.isfinite(a))) for a in arrays)
     exponent = 3 * floor(log10(largest) / 3) if largest > 0 else 0
     return 10.0 ** -min(max(exponent, min(PREFIXES)), max(PREFIXES))
 
 
-def prefix_of(factor: float) -> str:
+def find_prefix(factor: float) -> str:
     """Prefix of the unit of values that were multiplied by ``factor``."""
     return PREFIXES[-round(log10(factor))]
 
 
-def label_of(title: str, unit: str, factor: float) -> str:
+def write_label(title: str, unit: str, factor: float) -> str:
     """Label of an axis whose values were multiplied by ``factor``."""
-    return f"{title} ({prefix_of(factor)}{unit})"
+    return f"{title} ({find_prefix(factor)}{unit})"
 
 
 def tidy(ax: Axes) -> None:
@@ -100,6 +100,6 @@ def tidy(ax: Axes) -> None:
     ax.tick_params(direction="in", top=True, right=True)
 
 
-def quantity(value: float, unit: str) -> str:
+def typeset(value: float, unit: str) -> str:
     """A value with its unit and a minus as in print."""
-    return readable(value, unit).replace("-", "−")
+    return write_quantity(value, unit).replace("-", "−")

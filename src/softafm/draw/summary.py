@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 from rich.table import Table
 
-from softafm.draw.approach_data import DIRECTIONS, jumps_of
-from softafm.units.quantities import readable
+from softafm.draw.approach_data import DIRECTIONS, find_jumps
+from softafm.units.quantities import write_quantity
 
 if TYPE_CHECKING:
     from xarray import Dataset
@@ -15,16 +15,16 @@ if TYPE_CHECKING:
 _TINY = 1e-5
 
 
-def observables(dataset: "Dataset") -> Table:
+def list_observables(dataset: "Dataset") -> Table:
     """Return a table of every scalar of a result, or of the branches and jumps of a sweep."""
-    table = table_of(str(dataset.attrs.get("mode", "result")))
+    table = make_table(str(dataset.attrs.get("mode", "result")))
     differences = json.loads(dataset.attrs.get("check_differences", "{}"))
     for name, variable in dataset.data_vars.items():
         if variable.ndim == 0 and np.issubdtype(variable.dtype, np.number):
-            value = readable(float(variable), variable.attrs.get("units", ""))
+            value = write_quantity(float(variable), variable.attrs.get("units", ""))
             words = str(variable.attrs.get("long_name", ""))
             if name in differences:
-                words += f"; check {_percent(differences[name])}"
+                words += f"; check {_write_percent(differences[name])}"
             table.add_row(str(name), value, words)
     if {"y", "x"} <= set(dataset.dims):
         _add_map(table, dataset)
@@ -36,14 +36,14 @@ def observables(dataset: "Dataset") -> Table:
         _add_check(table, dataset.attrs, differences)
     if "dma_misfit_largest" in dataset.attrs:
         attributes = dataset.attrs
-        row = misfit_in_words(attributes["dma_misfit_largest"], attributes["dma_misfit_rms"])
+        row = describe_misfit(attributes["dma_misfit_largest"], attributes["dma_misfit_rms"])
         table.add_row(*row)
     if "regularised_range" in dataset.attrs:
-        words = regularised_in_words(
+        words = describe_regularisation(
             *(dataset.attrs[name] for name in ("given_tabor", "given_range", "regularised_range"))
         )
-        words += slowed_in_words(dataset.attrs["edge_slowed"])
-        table.add_row("range", readable(dataset.attrs["regularised_range"], "m"), words)
+        words += describe_slowing(dataset.attrs["edge_slowed"])
+        table.add_row("range", write_quantity(dataset.attrs["regularised_range"], "m"), words)
     return table
 
 
@@ -58,13 +58,13 @@ def _add_check(table: Table, attributes: dict, differences: dict[str, float]) ->
         return
     worst = max(differences, key=lambda name: abs(differences[name]))
     words = f"largest difference from a run {against}, of {worst}, over its scale"
-    table.add_row("check", _percent(differences[worst]), words)
+    table.add_row("check", _write_percent(differences[worst]), words)
     if "check_mean_height" in attributes:
-        height = readable(attributes["check_mean_height"], "m")
+        height = write_quantity(attributes["check_mean_height"], "m")
         table.add_row("check of heights", height, "largest difference")
 
 
-def _percent(share: float) -> str:
+def _write_percent(share: float) -> str:
     return f"{100 * share:+.2g} %" if abs(share) >= _TINY else f"under {100 * _TINY:g} %"
 
 
@@ -77,17 +77,17 @@ def _add_branches(table: Table, dataset: "Dataset") -> None:
         count = int(found.sum())
         words = "amplitudes"
         if count:
-            most = readable(float(dissipation[found].max()), "J")
-            words += f"; {_degrees(phase[found])}, at most {most}"
+            most = write_quantity(float(dissipation[found].max()), "J")
+            words += f"; {_write_degrees(phase[found])}, at most {most}"
         table.add_row(branch, f"{count} of {dataset.sizes['amplitude_ratio']}", words)
     for direction in DIRECTIONS:
-        for before, after in jumps_of(dataset, direction):
-            height = readable(float(dataset["sweep_height"].values[after]), "m")
+        for before, after in find_jumps(dataset, direction):
+            height = write_quantity(float(dataset["sweep_height"].values[after]), "m")
             amplitude, phase = (
                 dataset[f"{direction}_{name}"].values[[before, after]]
                 for name in ("amplitude", "phase")
             )
-            lengths = " to ".join(readable(value, "m") for value in amplitude)
+            lengths = " to ".join(write_quantity(value, "m") for value in amplitude)
             words = f"{lengths}, {phase[0]:.0f}° to {phase[1]:.0f}°"
             table.add_row(f"jump on {direction}", height, words)
     table.add_row("taps", str(int(dataset.attrs["solver_taps"])), "that were run")
@@ -100,7 +100,7 @@ def _add_map(table: Table, dataset: "Dataset") -> None:
         if variable.dims != ("y", "x") or not values.size:
             continue
         low, mean, high = (
-            readable(float(each), variable.attrs.get("units", ""))
+            write_quantity(float(each), variable.attrs.get("units", ""))
             for each in (values.min(), values.mean(), values.max())
         )
         table.add_row(str(name), mean, "everywhere" if low == high else f"{low} to {high}")
@@ -110,32 +110,32 @@ def _add_map(table: Table, dataset: "Dataset") -> None:
     table.add_row("pixels", f"{dataset.sizes['x']} × {dataset.sizes['y']}", words)
 
 
-def _degrees(phase: np.ndarray) -> str:
+def _write_degrees(phase: np.ndarray) -> str:
     return f"{phase.min():.0f}° to {phase.max():.0f}°"
 
 
-def slowed_in_words(slower: float) -> str:
+def describe_slowing(slower: float) -> str:
     """Tell how much slower the edge of a viscoelastic contact is in cohesive lengths."""
     if slower == 1:
         return ""
     return f"; the edge crosses its cohesive length {slower:.2g} times more slowly"
 
 
-def regularised_in_words(tabor: float, before: float, length: float) -> str:
+def describe_regularisation(tabor: float, before: float, length: float) -> str:
     """Tell what Tabor number and range, m, a contact had that has a range of ``length``, m, now."""
     if before == length:
         return f"of the law; a Tabor number of {tabor:.3g} needs no other"
-    was = f"it was {readable(before, 'm')} at a Tabor number of {tabor:.3g}"
+    was = f"it was {write_quantity(before, 'm')} at a Tabor number of {tabor:.3g}"
     return f"of the law, regularised; {was}"
 
 
-def misfit_in_words(largest: float, rms: float) -> tuple[str, str, str]:
+def describe_misfit(largest: float, rms: float) -> tuple[str, str, str]:
     """Return a row that tells how well a sample fits the measured moduli it was fitted to."""
     words = f"from the measured moduli, at most; {100 * rms:.2g} % in the mean square"
     return "fit off by", f"{100 * largest:.2g} %", words
 
 
-def table_of(title: str) -> Table:
+def make_table(title: str) -> Table:
     table = Table(title=title, title_justify="left", show_header=False, box=None)
     table.add_column(no_wrap=True)
     table.add_column(justify="right", no_wrap=True)

@@ -51,11 +51,11 @@ def plot_tip(
     """
     from matplotlib.figure import Figure
 
-    from softafm.draw.style import labels_of
+    from softafm.draw.style import choose_labels
 
     drawn = list_of("tips", tips, Tip, "a tip such as softafm.Paraboloid")
-    names = labels_of("tip", drawn, labels, (tip.kind for tip in drawn))
-    extent = extent_of(drawn) if extent is None else positive("extent", extent, "m")
+    names = choose_labels("tip", drawn, labels, (tip.kind for tip in drawn))
+    extent = choose_extent(drawn) if extent is None else positive("extent", extent, "m")
     figure = Figure(figsize=(6.4, 4.4), dpi=150, layout="constrained")
     draw_profiles(figure.add_subplot(), drawn, extent, names)
     return figure
@@ -63,17 +63,17 @@ def plot_tip(
 
 def draw_profiles(ax: "Axes", tips: Sequence[Tip], extent: float, names: Sequence[str]) -> None:
     """Draw profiles out to a radius (m) and the paraboloids of their apices on ``ax``."""
-    from softafm.draw.style import factor_of, label_of, line_of, tidy
+    from softafm.draw.style import choose_factor, choose_line, tidy, write_label
 
     r = np.linspace(-extent, extent, 2 * _POINTS + 1)
-    scale = factor_of(r)
+    scale = choose_factor(r)
     fitted = set()
     top = _LOWEST * extent
     for index, (tip, name) in enumerate(zip(tips, names, strict=True)):
         height = tip.profile(np.abs(r))
         top = max(top, min(float(height[-1]), _HIGHEST * extent))
-        ax.plot(scale * r, scale * height, label=name, **line_of(index))
-        radius = apex_radius(tip, extent)
+        ax.plot(scale * r, scale * height, label=name, **choose_line(index))
+        radius = estimate_apex_radius(tip, extent)
         if radius is not None and float(f"{radius:.3g}") not in fitted:
             fitted.add(float(f"{radius:.3g}"))
             shown = "paraboloid of the apex" if len(fitted) == 1 else None
@@ -82,13 +82,13 @@ def draw_profiles(ax: "Axes", tips: Sequence[Tip], extent: float, names: Sequenc
     ax.set_xlim(-scale * extent, scale * extent)
     ax.set_ylim(-0.05 * scale * top, 1.05 * scale * top)
     ax.set_aspect("equal")
-    ax.set_xlabel(label_of("Radius", "m", scale), fontsize=11)
-    ax.set_ylabel(label_of("Height", "m", scale), fontsize=11)
+    ax.set_xlabel(write_label("Radius", "m", scale), fontsize=11)
+    ax.set_ylabel(write_label("Height", "m", scale), fontsize=11)
     tidy(ax)
     ax.legend(frameon=False, fontsize=9, loc="upper center")
 
 
-def extent_of(tips: Sequence[Tip]) -> float:
+def choose_extent(tips: Sequence[Tip]) -> float:
     """Radius, m, within which the apex of every tip lies, and all its joints."""
     extents = []
     for tip in tips:
@@ -98,7 +98,7 @@ def extent_of(tips: Sequence[Tip]) -> float:
     return max(extents)
 
 
-def apex_radius(tip: Tip, extent: float) -> float | None:
+def estimate_apex_radius(tip: Tip, extent: float) -> float | None:
     """Radius of curvature at the apex, m, or None of one that is flat or too sharp to be seen."""
     r = _APEX * extent * np.array([1.0, 2.0])
     height = tip.profile(r)

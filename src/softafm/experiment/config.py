@@ -7,16 +7,17 @@ from importlib import resources
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from softafm.checks.paths import why_no_file
-from softafm.checks.refusals import ConfigError, as_written, nearest, one_of, shown, unknown
+from softafm.checks.paths import explain_no_file
+from softafm.checks.refusals import ConfigError, nearest, one_of, refuse_unknown, reword, shown
 from softafm.contact import Contact
 from softafm.experiment import schema
 from softafm.experiment.takers import refuse_result, refuse_unless
 from softafm.experiment.toml_text import parse
+from softafm.instrument.motion import is_steady
+from softafm.modes import MODES, Inputs, Mode, Settings
 from softafm.modes.check import finer_run
-from softafm.modes.force_distance import ramp_observables
-from softafm.modes.start import carry, refuse_start_inside, refuse_unable, regularised
-from softafm.modes.tapping import tap_observables
+from softafm.modes.perform import simulate
+from softafm.modes.start import refuse_start_inside, refuse_unable, regularise_contact
 
 if TYPE_CHECKING:
     from xarray import Dataset
@@ -35,17 +36,18 @@ class Experiment:
     Parameters
     ----------
     mode
-        ``"force-distance"``, ``"force-spectroscopy"``, ``"tapping-cycle"`` or
-        ``"approach-curve"``.
+        Name of one of the ``softafm.modes.MODES``.
     contact, motion
-        What touches, and how the tip moves, or the base of its cantilever; of an approach curve
-        free amplitude, amplitude ratios and frequency of the drive.
+        What touches, and what the mode takes besides: how the tip moves, or the base of its
+        cantilever, or the parameters of such motions.
     cantilever
         What carries the tip, in a mode that needs one.
     solver
         An object from ``softafm.solvers``, or None for the default one.
     tolerance, profiles, check, regularise
         As in ``softafm.force_distance``.
+    tables
+        What the further tables of the mode describe, by name.
     document
         The file's tables as they were written, overrides included.
     """
@@ -59,7 +61,13 @@ class Experiment:
     profiles: bool = False
     check: bool = False
     regularise: float | None = None
+    tables: Mapping[str, Any] = field(default_factory=dict)
     document: Mapping[str, Any] = field(default_factory=dict, repr=False, compare=False)
+
+    @property
+    def inputs(self) -> Inputs:
+        """What the mode is applied to."""
+        return Inputs(self.contact, self.motion, self.cantilever, self.tables)
 
     def run(self, progress: bool | Callable[[float, str], None] | None = None) -> "Dataset":
         """Call the mode's public function and return its dataset.
@@ -69,36 +77,18 @@ class Experiment:
         ConfigError
             If the mode refuses a value of the file.
         """
-        import softafm as sa
-
+        mode = MODES[self.mode]
         options = {
             name: getattr(self, name) for name in ("solver", "tolerance", "check", "regularise")
         }
-        options["progress"] = progress
-        motion = self.motion
-        with self._told_as_written():
-            if self.mode == "approach-curve":
-                return sa.approach_curve(
-                    self.contact,
-                    self.cantilever,
-                    motion.free_amplitude,
-                    motion.amplitude_ratio,
-                    drive_frequency=motion.drive_frequency,
-                    **options,
-                )
+        if mode.takes_profiles:
             options["profiles"] = self.profiles
-            if self.mode == "force-distance":
-                return sa.force_distance(self.contact, motion, **options)
-            if self.mode == "force-spectroscopy":
-                return sa.force_spectroscopy(self.contact, self.cantilever, motion, **options)
-            return sa.tapping_cycle(
-                self.contact,
-                amplitude=motion.amplitude,
-                mean_height=motion.mean_height,
-                frequency=motion.frequency,
-                cycles=motion.cycles,
-                **options,
-            )
+        lever = {"cantilever": self.cantilever} if mode.lever else {}
+        with self._worded_as_written():
+            return mode.function(
+                self.contact, **lever, **mode.arguments(self.motion), **self.tables, **options,
+                progress=progress,
+            )  # fmt: skip
 
     def observables(self) -> dict[str, Any]:
         """Return what ``run`` observes by name, without its dataset: that takes a while of its own.
@@ -108,29 +98,23 @@ class Experiment:
         ConfigError
             As ``run``.
         """
-        if self.check or self.mode == "approach-curve":
+        if self.check:
             return {str(name): found.values for name, found in self.run().variables.items()}
-        with self._told_as_written():
-            contact = regularised(self.contact, self.regularise)
-            lever = {} if self.cantilever is None else {"stiffness": self.cantilever.stiffness}
-            *_, history = carry(
-                contact, self.motion, self.solver, self.tolerance, False, None, **lever
-            )
-        if self.mode == "tapping-cycle":
-            found = tap_observables(contact, self.motion, history)
-        else:
-            path = history.motion.height(history.time) if lever else history.tip_height
-            found = ramp_observables(history, path)
-        return {name: values for name, (_, values) in found.items()}
+        with self._worded_as_written():
+            contact = regularise_contact(self.contact, self.regularise)
+            settings = Settings(self.solver, self.tolerance)
+            inputs = self.inputs._replace(contact=contact)
+            found = simulate(MODES[self.mode], inputs, settings)
+        return {name: values for name, (_, values) in found.data.items()}
 
     @contextmanager
-    def _told_as_written(self) -> Iterator[None]:
+    def _worded_as_written(self) -> Iterator[None]:
         """Reword what a mode refuses with what the file says."""
         try:
             yield
         except ValueError as error:
             for table in ("motion", "run"):
-                line = as_written(table, self.document.get(table, {}), error)
+                line = reword(table, self.document.get(table, {}), error)
                 if line is not None:
                     raise ConfigError([line]) from error
             raise
@@ -183,7 +167,7 @@ def load_document(path: str | Path) -> dict[str, Any]:
     try:
         refuse_result(path)
         if not path.is_file():
-            raise ConfigError([f"{name}: {why_no_file(path)}"])
+            raise ConfigError([f"{name}: {explain_no_file(path)}"])
         size = path.stat().st_size
         if size > LARGEST_FILE:
             raise ConfigError(
@@ -268,29 +252,31 @@ def experiment_from(
     """
     refuse_unless(document, "run")
     problems: list[str] = []
-    mode = document.get("mode")
-    known = ["mode", *_TABLES, "cantilever", *_OPTIONAL_TABLES]
-    problems += [unknown(key, known, key) for key in document if key not in known]
-    modes = list(schema.MOTIONS)
-    if mode is None:
-        problems.append(f"mode: missing; must be {one_of(modes)}")
-    elif mode not in modes:
-        problems.append(f"mode = {shown(mode)}: {nearest(mode, modes)}")
+    name = document.get("mode")
+    mode = MODES.get(name) if isinstance(name, str) else None
+    further = () if mode is None else tuple(mode.tables)
+    known = ["mode", *_TABLES, "cantilever", *further, *_OPTIONAL_TABLES]
+    problems += [refuse_unknown(key, known, key) for key in document if key not in known]
+    if name is None:
+        problems.append(f"mode: missing; must be {one_of(list(MODES))}")
+    elif mode is None:
+        problems.append(f"mode = {shown(name)}: {nearest(name, list(MODES))}")
 
-    tables = [*_TABLES, *(name for name in _OPTIONAL_TABLES if name in document)]
-    if mode not in modes:
+    tables = [*_TABLES, *further, *(each for each in _OPTIONAL_TABLES if each in document)]
+    if mode is None:
         tables.remove("motion")
-    elif mode in schema.CANTILEVERS:
+    elif mode.lever:
         tables.append("cantilever")
     elif "cantilever" in document:
+        levers = [each.name for each in MODES.values() if each.lever]
         problems.append(
-            f"cantilever: of no use with mode = '{mode}'; leave it out, or use the mode "
-            f"{one_of(list(schema.CANTILEVERS))}"
+            f"cantilever: of no use with mode = '{mode.name}'; leave it out, or use the mode "
+            f"{one_of(levers)}"
         )
     built: dict[str, Any] = {}
-    for name in tables:
+    for table in tables:
         try:
-            built[name] = (build or build_table)(name, document, mode, folder)
+            built[table] = (build or build_table)(table, document, mode, folder)
         except ConfigError as error:
             problems += str(error).splitlines()
     run, solver = built.get("run", schema.Run()), built.get("solver")
@@ -299,21 +285,21 @@ def experiment_from(
             f"run.tolerance = {run.tolerance}: the solver '{solver.kind}' takes fixed steps, which "
             "no tolerance changes; leave it out and use solver.steps"
         )
-    if run.profiles and mode == "approach-curve":
+    if run.profiles and mode is not None and not mode.takes_profiles:
         problems.append(
-            "run.profiles = True: of no use with mode = 'approach-curve', which keeps the "
-            "observables of its taps and none of their surfaces; leave it out"
+            f"run.profiles = True: of no use with mode = '{mode.name}', which keeps observables "
+            "and no shapes of the surface; leave it out"
         )
-    if problems:
+    if problems or mode is None:
         raise ConfigError(problems)
     contact = Contact(tip=built["tip"], sample=built["sample"], surface=built["surface"])
     _refuse_flow(contact, mode, built["motion"], document["motion"])
     _refuse_run(contact, solver, run, document)
-    if mode != "approach-curve":
-        used = regularised(contact, run.regularise)
-        _refuse_motion(used, built["motion"], solver, document["motion"])
+    if mode.simulate is None:
+        used = regularise_contact(contact, run.regularise)
+        _refuse_motion(used, mode.path(built["motion"]), solver, document["motion"])
     return Experiment(
-        mode=str(mode),
+        mode=mode.name,
         contact=contact,
         motion=built["motion"],
         cantilever=built.get("cantilever"),
@@ -322,6 +308,7 @@ def experiment_from(
         profiles=run.profiles,
         check=run.check,
         regularise=run.regularise,
+        tables={each: built[each] for each in further},
         document=document,
     )
 
@@ -331,25 +318,25 @@ def _refuse_run(contact: Contact, solver: Any, run: schema.Run, document: Mappin
     written = document.get("run", {})
     try:
         finer_run(run.check, solver, run.tolerance)
-        regularised(contact, run.regularise)
+        regularise_contact(contact, run.regularise)
     except ValueError as error:
         key = "check" if str(error).startswith("check") else "regularise"
         reason = str(error).removeprefix("check = True: ")
         raise ConfigError([f"run.{key} = {shown(written[key])}: {reason}"]) from None
 
 
-def _refuse_flow(contact: Contact, mode: Any, motion: Any, written: dict) -> None:
+def _refuse_flow(contact: Contact, mode: Mode, motion: Any, written: dict) -> None:
     """Raise ConfigError if cycles are to be steady on a sample that flows."""
     if contact.body.compliance.fluidity == 0:
         return
-    if mode == "approach-curve":
+    if mode.steady:
         raise ConfigError(
             [
-                f"mode = '{mode}': of no use, as the sample '{contact.sample.kind}' flows and "
+                f"mode = '{mode.name}': of no use, as the sample '{contact.sample.kind}' flows and "
                 "the tip sinks deeper with every cycle"
             ]
         )
-    if getattr(motion, "steady", False):
+    if is_steady(motion):
         given = "'steady'" if "cycles" in written else "missing"
         raise ConfigError(
             [
@@ -364,16 +351,20 @@ def _refuse_motion(contact: Contact, motion: Any, solver: Any, written: dict) ->
     try:
         refuse_start_inside(contact, motion)
     except ValueError as error:
-        key = next(key for key in ("start", "mean_height", "file") if key in written)
-        raise ConfigError([f"motion.{key} = {shown(written[key])}: {error}"]) from None
+        key = next((key for key in ("start", "mean_height", "file") if key in written), None)
+        place = "motion" if key is None else f"motion.{key} = {shown(written[key])}"
+        raise ConfigError([f"{place}: {error}"]) from None
     try:
         refuse_unable(solver, motion)
     except ValueError as error:
-        raise ConfigError([as_written("motion", written, error) or str(error)]) from None
+        raise ConfigError([reword("motion", written, error) or str(error)]) from None
 
 
-def build_table(name: str, document: Mapping[str, Any], mode: Any, folder: Path) -> Any:
-    """Return the object that a table describes, having made sure that solvers can use it."""
+def build_table(name: str, document: Mapping[str, Any], mode: Mode | None, folder: Path) -> Any:
+    """Return the object that a table describes, having made sure that solvers can use it.
+
+    The mode matters for ``motion``, ``cantilever`` and its further tables alone.
+    """
     if name not in document:
         raise ConfigError([f"{name}: missing; add a table [{name}]"])
     written = document[name]
@@ -382,9 +373,12 @@ def build_table(name: str, document: Mapping[str, Any], mode: Any, folder: Path)
     if name == "run":
         return schema.built(name, written, schema.Run, folder=folder)
     if name == "cantilever":
-        return schema.built(name, written, schema.CANTILEVERS[mode], folder=folder)
-    if name == "motion":
-        shapes = schema.MOTIONS[mode]
+        table = schema.cantilever_of(mode) if mode is not None else None
+        return schema.built(name, written, table or schema.LeverTable, folder=folder)
+    if mode is not None and name in mode.tables:
+        return schema.built(name, written, schema.table_of(mode.tables[name]), folder=folder)
+    if name == "motion" and mode is not None:
+        shapes = schema.motions_of(mode)
         default = next(iter(shapes))
         return schema.chosen(name, written, "shape", shapes, default=default, folder=folder)
     thing = schema.chosen(name, written, *schema.CHOICES[name], folder=folder)

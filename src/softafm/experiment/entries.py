@@ -41,6 +41,11 @@ def _quantity(kind: units.Kind) -> tuple[Any, ...]:
     return _read(kind), Field(description=kind.valid), asked
 
 
+def quantity_of(kind: units.Kind) -> Any:
+    """Return the type that reads a quantity of a kind, written as text with its unit."""
+    return Annotated[float, *_quantity(kind)]
+
+
 def _quantities(kind: units.Kind) -> tuple[Any, ...]:
     asked = Input("list", kind.example, unit=kind.si)
     return _described(_list, f"a list, each {kind.valid}", asked)

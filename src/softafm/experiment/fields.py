@@ -12,6 +12,7 @@ from pydantic.fields import FieldInfo
 from softafm.checks.refusals import nearest, one_of, shown
 from softafm.experiment import schema
 from softafm.experiment.entries import Input
+from softafm.modes import MODES, Mode
 
 Keys = tuple[str | int, ...]
 
@@ -90,9 +91,9 @@ def field_of(
         raise ValueError("cannot vary within a sweep, as every mode observes something else")
     table, *keys = keys_of(path)
     name = str(table)
-    mode = document["mode"]
+    mode = MODES[document["mode"]]
     known = ["tip", "sample", "surface", "motion", "solver", "run"]
-    known += ["cantilever"] if mode in schema.CANTILEVERS else []
+    known += [*(["cantilever"] if mode.lever else []), *mode.tables]
     if name not in known:
         raise ValueError(f"no table of this experiment; {nearest(name, known)}")
     chooser, choices = _choices(name, mode)
@@ -113,14 +114,16 @@ def field_of(
     return _read_by(path, found[0], keys[1:], folder, bare)
 
 
-def _choices(name: str, mode: str) -> tuple[str, Mapping[str, Any]]:
+def _choices(name: str, mode: Mode) -> tuple[str, Mapping[str, Any]]:
     """Return the key of a table that chooses, "" if none does, and what it chooses from."""
     if name == "run":
         return "", {"": schema.Run}
     if name == "cantilever":
-        return "", {"": schema.CANTILEVERS[mode]}
+        return "", {"": schema.cantilever_of(mode)}
+    if name in mode.tables:
+        return "", {"": schema.table_of(mode.tables[name])}
     if name == "motion":
-        return "shape", schema.MOTIONS[mode]
+        return "shape", schema.motions_of(mode)
     return schema.CHOICES[name]
 
 

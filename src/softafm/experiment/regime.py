@@ -1,29 +1,32 @@
 """What an experiment is before it runs, and what it will cost: numbers, and a table for people."""
 
 from math import isfinite, log10
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from rich.table import Table
 
-from softafm.draw.summary import misfit_in_words, regularised_in_words, slowed_in_words, table_of
+from softafm.draw.summary import (
+    describe_misfit,
+    describe_regularisation,
+    describe_slowing,
+    make_table,
+)
 from softafm.instrument.motions import lowest_height
-from softafm.modes.approach import deepest_tap, drive_of
-from softafm.modes.start import regularised
-from softafm.results.datasets import edge_slowed
+from softafm.modes import MODES, Foreseen, Row
+from softafm.modes.start import regularise_contact
+from softafm.results.datasets import compute_edge_slowing
 from softafm.rheology.represented import Represented
 from softafm.solvers.energy import Energy, cohesive_lengths_crossed
 from softafm.tips import Paraboloid
-from softafm.units.quantities import readable
+from softafm.units.quantities import write_quantity
 
 if TYPE_CHECKING:
     from softafm.contact import Contact
     from softafm.experiment.config import Experiment
-    from softafm.instrument.oscillator import Drive
 
-_TAPS, _CHECKED, _TENTH = 130, 4, 2.8
-"""By experience: taps of an approach curve, runs that one with its check is worth, and one with a
-tenth of the tolerance."""
+_CHECKED, _TENTH = 4, 2.8
+"""By experience: runs that one with its check is worth, and one with a tenth of the tolerance."""
 _USUAL = 1e-2
 """Tolerance for which solvers tell what to expect."""
 _FLOWS = "flows"
@@ -33,25 +36,9 @@ _FEW = 4
 """Creep times up to which each has a row of its own."""
 
 
-class Row(NamedTuple):
-    """A number with its unit, as text, and what it means."""
-
-    name: str
-    value: str
-    words: str
-
-
-class _Case(NamedTuple):
-    """What comes in touch, and how: of an approach curve its deepest tap."""
-
-    contact: "Contact"
-    motion: Any
-    drive: "Drive | None"
-
-
 def regime(experiment: "Experiment") -> Table:
     """Return a table of the numbers that say how a contact will behave and what it will cost."""
-    table = table_of(f"{experiment.mode}, before any run")
+    table = make_table(f"{experiment.mode}, before any run")
     for row in rows(experiment):
         table.add_row(*row)
     return table
@@ -59,9 +46,9 @@ def regime(experiment: "Experiment") -> Table:
 
 def rows(experiment: "Experiment") -> list[Row]:
     """Return the rows of that table."""
-    case = _case(experiment)
-    contact, motion, drive = case
-    first, last = float(motion.breaks[0]), float(motion.breaks[-1])
+    contact, case = _case(experiment)
+    motion = case.motion
+    duration = float(motion.breaks[-1] - motion.breaks[0])
     lowest = lowest_height(motion)
     radius = contact.contact_radius(lowest)
 
@@ -69,66 +56,55 @@ def rows(experiment: "Experiment") -> list[Row]:
     _add_tip(found, contact)
     _add_adhesion(found, contact)
     _add_regularisation(found, experiment, contact)
-    carried = experiment.cantilever is not None and drive is None
-    where = "above the undeformed surface" + (", lever unbent" if carried else "")
-    where = "of a tap: Hertz against the drive" if drive else where
-    found.append(Row("lowest tip height", readable(lowest, "m"), where))
+    bends = MODES[experiment.mode].lever == "stiffness"
+    where = "above the undeformed surface" + (", lever unbent" if bends else "")
+    found.append(Row("lowest tip height", write_quantity(lowest, "m"), case.depth or where))
     theory = "JKR" if contact.adhesive else "without adhesion"
     expected = f"{theory}, {_slow(contact)}, at the lowest height"
     words = expected if radius else "none is expected to last"
-    found.append(Row("contact radius", readable(radius, "m"), words))
-    if carried:
+    found.append(Row("contact radius", write_quantity(radius, "m"), words))
+    if bends:
         _add_lever(found, contact, experiment.cantilever.stiffness, radius)
-    if drive:
-        _add_drive(found, drive)
-    whole = "tap" if drive else "motion"
-    found.append(Row(f"time of the {whole}", readable(last - first, "s"), ""))
-    _add_sample(found, contact, last - first, whole)
-    cost = _cost_in_words(_seconds(experiment, case))
-    found.append(Row("expected cost", cost, _cost_of(experiment, case)))
+    found += case.rows
+    found.append(Row(f"time of the {case.noun}", write_quantity(duration, "s"), ""))
+    _add_sample(found, contact, duration, case.noun)
+    cost = _cost_in_words(expected_seconds(experiment))
+    found.append(Row("expected cost", cost, _reason_of_cost(experiment, contact, case)))
     return found
 
 
 def expected_seconds(experiment: "Experiment") -> float:
     """Return the order of magnitude of a run, s on one core."""
-    return _seconds(experiment, _case(experiment))
+    contact, case = _case(experiment)
+    runs = case.runs * (_CHECKED if experiment.check else 1)
+    solver = _solver(experiment)
+    if solver.adaptive:
+        runs *= _TENTH ** log10(_USUAL / experiment.tolerance)
+    return runs * solver.expected_seconds(contact, case.motion)
 
 
-def _case(experiment: "Experiment") -> _Case:
-    contact = regularised(experiment.contact, experiment.regularise)
-    motion = experiment.motion
-    if experiment.mode != "approach-curve":
-        return _Case(contact, motion, None)
-    drive, frequency = drive_of(
-        experiment.cantilever, motion.free_amplitude, motion.drive_frequency
-    )
-    amplitudes = motion.free_amplitude * np.array(motion.amplitude_ratio)
-    return _Case(contact, deepest_tap(contact, drive, frequency, amplitudes), drive)
+def _case(experiment: "Experiment") -> tuple["Contact", Foreseen]:
+    """Return what comes in touch, and how."""
+    contact = regularise_contact(experiment.contact, experiment.regularise)
+    mode = MODES[experiment.mode]
+    return contact, mode.expect(experiment.inputs._replace(contact=contact))
 
 
 def _solver(experiment: "Experiment") -> Any:
     return Energy() if experiment.solver is None else experiment.solver
 
 
-def _seconds(experiment: "Experiment", case: _Case) -> float:
-    runs = (_TAPS if case.drive else 1) * (_CHECKED if experiment.check else 1)
-    solver = _solver(experiment)
-    if solver.adaptive:
-        runs *= _TENTH ** log10(_USUAL / experiment.tolerance)
-    return runs * solver.expected_seconds(case.contact, case.motion)
-
-
-def _cost_of(experiment: "Experiment", case: _Case) -> str:
-    """Tell what a run costs its time for."""
+def _reason_of_cost(experiment: "Experiment", contact: "Contact", case: Foreseen) -> str:
+    """Return what a run costs its time for."""
     solver = _solver(experiment)
     if not solver.adaptive:
         reason = f"{solver.steps} steps of {solver.nodes} nodes"
-    elif case.contact.adhesive:
-        crossed = cohesive_lengths_crossed(case.contact, case.motion)
+    elif contact.adhesive:
+        crossed = cohesive_lengths_crossed(contact, case.motion)
         reason = f"the edge crosses at most {crossed:.2g} cohesive lengths"
     else:
         reason = "no tension zone to resolve"
-    reason = f"some {_TAPS} taps; {reason}" if case.drive else reason
+    reason = f"some {case.runs} {case.noun}s; {reason}" if case.runs > 1 else reason
     return f"{reason}; with a check" if experiment.check else reason
 
 
@@ -137,13 +113,13 @@ def _add_tip(found: list[Row], contact: "Contact") -> None:
     name, words = "effective radius", f"of the {contact.tip.kind}, where it is one reach high"
     if isinstance(contact.tip, Paraboloid):
         name, words = "tip radius", contact.tip.kind
-    found.append(Row(name, readable(contact.effective_radius, "m"), words))
+    found.append(Row(name, write_quantity(contact.effective_radius, "m"), words))
 
 
 def _add_adhesion(found: list[Row], contact: "Contact") -> None:
     """Tell how soft the contact is for its adhesion, and how wide the tension zone."""
     law = contact.surface
-    work = readable(law.work_of_adhesion, "J/m²")
+    work = write_quantity(law.work_of_adhesion, "J/m²")
     if not contact.adhesive:
         found.append(Row("work of adhesion", work, f"{law.kind}: no adhesion"))
         return
@@ -154,7 +130,7 @@ def _add_adhesion(found: list[Row], contact: "Contact") -> None:
         ("fast", contact.cohesive_length_instantaneous),
         ("slow", contact.cohesive_length),
     ):
-        value = readable(length, "m") if length else _FLOWS
+        value = write_quantity(length, "m") if length else _FLOWS
         found.append(Row(f"cohesive length, {when}", value, "tension zone at the edge"))
     found.append(Row("work of adhesion", work, f"{law.kind}: per area, to part the surfaces"))
 
@@ -164,9 +140,9 @@ def _add_regularisation(found: list[Row], experiment: "Experiment", contact: "Co
     given = experiment.contact
     if experiment.regularise is not None:
         length = contact.surface.range
-        words = regularised_in_words(given.tabor_softened, given.surface.range, length)
-        words += slowed_in_words(edge_slowed(given, length))
-        found.append(Row("range", readable(length, "m"), words))
+        words = describe_regularisation(given.tabor_softened, given.surface.range, length)
+        words += describe_slowing(compute_edge_slowing(given, length))
+        found.append(Row("range", write_quantity(length, "m"), words))
     elif given.tabor_softened > _SOFT:
         length = given.surface.range * given.tabor_softened / _ADVISED
         try:
@@ -174,8 +150,8 @@ def _add_regularisation(found: list[Row], experiment: "Experiment", contact: "Co
             words = "would enlarge the range from {} to {}"
         except ValueError:
             words = "is not possible with this law, whose range is {}; one of {} would do"
-        words = words.format(readable(given.surface.range, "m"), readable(length, "m"))
-        words += slowed_in_words(edge_slowed(given, length))
+        words = words.format(write_quantity(given.surface.range, "m"), write_quantity(length, "m"))
+        words += describe_slowing(compute_edge_slowing(given, length))
         found.append(Row("regularise", f"{_ADVISED:g}", words))
 
 
@@ -184,13 +160,15 @@ def _add_sample(found: list[Row], contact: "Contact", duration: float, whole: st
     sample = contact.rheology
     creep = sample.compliance
     times = creep.retardation_times
-    fast, late = (readable(1 / float(sample.creep_compliance(t)), "Pa") for t in (0, duration))
+    fast, late = (
+        write_quantity(1 / float(sample.creep_compliance(t)), "Pa") for t in (0, duration)
+    )
     softer = f"; {late} after the {whole}" if times.size or creep.fluidity else ""
     found.append(Row("Young's modulus", fast, sample.kind + softer))
     if sample.dma_misfit:
-        found.append(Row(*misfit_in_words(*sample.dma_misfit)))
+        found.append(Row(*describe_misfit(*sample.dma_misfit)))
     if isinstance(sample, Represented):
-        ends = " to ".join(readable(time, "s") for time in sample.window)
+        ends = " to ".join(write_quantity(time, "s") for time in sample.window)
         words = f"to {100 * sample.represented_error:.2g} %, from {ends}"
         if duration > sample.window[1]:
             words += f"; the {whole} outlasts it: enlarge the window"
@@ -199,19 +177,19 @@ def _add_sample(found: list[Row], contact: "Contact", duration: float, whole: st
         found.append(Row("represented by", _elements(sample.element_count), words))
     elif times.size > _FEW:
         share = float(creep.elements @ -np.expm1(-duration / times) / creep.elements.sum())
-        ends = f"{readable(times.min(), 's')} to {readable(times.max(), 's')}"
+        ends = f"{write_quantity(times.min(), 's')} to {write_quantity(times.max(), 's')}"
         words = f"{ends}; {share:.2g} of their creep in the {whole}"
         found.append(Row("creep times", _elements(times.size), words))
     else:
         for time in map(float, times):
             words = _creep_in_words(time / duration, whole)
-            found.append(Row("creep time", readable(time, "s"), words))
+            found.append(Row("creep time", write_quantity(time, "s"), words))
     if creep.fluidity:
         viscosity = 1 / creep.fluidity
         shear = viscosity / (2 * (1 + sample.poisson))
-        words = f"in tension, {readable(shear, 'Pa')} s in shear; flow without end"
+        words = f"in tension, {write_quantity(shear, 'Pa')} s in shear; flow without end"
         words = "of the elements, beyond the window" if isinstance(sample, Represented) else words
-        found.append(Row("viscosity", f"{readable(viscosity, 'Pa')} s", words))
+        found.append(Row("viscosity", f"{write_quantity(viscosity, 'Pa')} s", words))
 
 
 def _elements(count: int) -> str:
@@ -221,32 +199,24 @@ def _elements(count: int) -> str:
 def _slow(contact: "Contact") -> str:
     """Tell which modulus stands for the long run."""
     if contact.body.compliance.fluidity:
-        return f"at {readable(contact.softened_modulus, 'Pa')} as flow sets in"
+        return f"at {write_quantity(contact.softened_modulus, 'Pa')} as flow sets in"
     return "slow"
 
 
 def _add_lever(found: list[Row], contact: "Contact", lever: float, radius: float) -> None:
     """Compare the lever, N/m, with what pulls it in and with what it presses on."""
-    found.append(Row("lever stiffness", readable(lever, "N/m"), ""))
+    found.append(Row("lever stiffness", write_quantity(lever, "N/m"), ""))
     attraction = contact.steepest_attraction
     words = "softer, the lever snaps in" if lever < attraction else "the lever is stiffer"
     words = words if contact.surface.attracts else "the law only repels"
-    found.append(Row("steepest attraction", readable(attraction, "N/m"), f"undeformed; {words}"))
+    found.append(
+        Row("steepest attraction", write_quantity(attraction, "N/m"), f"undeformed; {words}")
+    )
     if radius:
         stiffness = 2 * radius * contact.softened_modulus * contact.body.hardening(radius)
         share = stiffness / (stiffness + lever)
         words = f"2·E·a, {_slow(contact)}; lever bends by {share:.0%} of the way"
-        found.append(Row("contact stiffness", readable(stiffness, "N/m"), words))
-
-
-def _add_drive(found: list[Row], drive: "Drive") -> None:
-    """Tell what drives the lever, and what that can hold and feed."""
-    found.append(Row("lever stiffness", readable(drive.stiffness, "N/m"), ""))
-    words = f"driven at {drive.detuning:.4g} of the resonance, Q = {drive.quality_factor:.4g}"
-    found.append(Row("free amplitude", readable(drive.free_amplitude, "m"), words))
-    found.append(Row("force of the drive", readable(drive.force, "N"), "amplitude, on the tip"))
-    most = readable(drive.most_dissipation, "J")
-    found.append(Row("largest dissipation", most, "that the drive can feed, a cycle"))
+        found.append(Row("contact stiffness", write_quantity(stiffness, "N/m"), words))
 
 
 def _tabor_in_words(tabor: float) -> str:

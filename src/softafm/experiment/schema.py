@@ -5,7 +5,8 @@ its fields are the table's other keys, and ``build`` returns the object.
 """
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, fields
+from dataclasses import MISSING, fields
+from functools import cache
 from inspect import Parameter, signature
 from pathlib import Path
 from typing import Annotated, Any, ClassVar, Literal, get_args, get_origin, get_type_hints
@@ -24,13 +25,13 @@ from pydantic import (
 from softafm.checks.refusals import (
     ConfigError,
     all_of,
-    as_written,
+    describe_problems,
     nearest,
     one_of,
-    problems,
+    reword,
     shown,
 )
-from softafm.checks.suggestions import limit
+from softafm.checks.suggestions import explain_limit
 from softafm.experiment.entries import (
     Angle,
     Compliances,
@@ -66,11 +67,14 @@ from softafm.experiment.entries import (
     Whole,
     choice_of,
     file_of,
+    quantity_of,
     refused_as,
 )
 from softafm.files.measured import read_base_trajectory, read_trajectory
 from softafm.instrument.cantilever import Cantilever
 from softafm.instrument.motions import Sine, Trajectory, Triangle
+from softafm.modes import Mode
+from softafm.modes.approach import AmplitudeSweep
 from softafm.rheology import (
     Elastic,
     FractionalStandardLinearSolid,
@@ -101,7 +105,7 @@ from softafm.surfaces import (
     VanDerWaalsAttraction,
     read_law,
 )
-from softafm.surfaces.limits import length
+from softafm.surfaces.limits import check_length
 from softafm.tips import (
     Cone,
     FlatPunch,
@@ -112,6 +116,7 @@ from softafm.tips import (
     Tip,
     read_tip_profile,
 )
+from softafm.units.quantities import Kind
 
 
 class Table(BaseModel):
@@ -236,15 +241,6 @@ class BaseTrajectoryMotion(TrajectoryMotion):
     file: Annotated[Any, *file_of(read_base_trajectory)]
 
 
-@dataclass(frozen=True)
-class AmplitudeSweep:
-    """What ``softafm.approach_curve`` takes besides contact and cantilever."""
-
-    free_amplitude: float
-    amplitude_ratio: tuple[float, ...]
-    drive_frequency: float | None = None
-
-
 class SweepMotion(Table):
     """``[motion]`` of an approach curve: amplitude ratios, listed or evenly spaced.
 
@@ -322,7 +318,7 @@ _PLAIN: dict[Any, Any] = {
     bool: Flag,
     Stepper: choice_of(STEPPERS),
 }
-"""How all other parameters are written, by the type that the solver's dataclass declares."""
+"""How all other parameters are written, by the type that the dataclass declares."""
 
 
 class Solver(Table):
@@ -344,12 +340,20 @@ def _solver(solver: type) -> type[Solver]:
 
 
 def _written(name: str, declared: Any) -> Any:
-    """Return the type of a key that is a solver's parameter."""
+    """Return the type of a key that is a field of a dataclass; ValueError if there is none."""
     if name in _WITH_UNIT:
         return _WITH_UNIT[name]
+    for unit in getattr(declared, "__metadata__", ()):
+        if isinstance(unit, Kind):
+            return quantity_of(unit)
     if get_origin(declared) is Literal:
         return choice_of({choice: choice for choice in get_args(declared)})
-    return _PLAIN[declared]
+    if declared in _PLAIN:
+        return _PLAIN[declared]
+    raise ValueError(
+        f"field {name}: {declared} cannot be written in an experiment file; take Annotated[float, "
+        "LENGTH] or another Kind of softafm.units.quantities, or float, int, bool or a Literal"
+    )
 
 
 class Thing(Table):
@@ -409,7 +413,7 @@ KEYS: dict[str, Any] = {
     ),
     **dict.fromkeys(
         ("decay", "core", "debye_length", "cutoff"),
-        Annotated[Length, refused_as(lambda number: length("", number))],
+        Annotated[Length, refused_as(lambda number: check_length("", number))],
     ),
     "height": Length,
     **dict.fromkeys(("E", "E0", "E1", "G", "G0"), Annotated[Modulus, Positive]),
@@ -525,25 +529,56 @@ CHOICES: dict[str, tuple[str, dict[str, type[Table]]]] = {
 }
 """For each table the key that chooses, and what it can choose."""
 
-_ANY_MOTION: dict[str, type[Table]] = {
-    "triangle": TriangleMotion,
-    "sine": SineMotion,
-    "trajectory": TrajectoryMotion,
+_MOTIONS: dict[type, type[Table]] = {
+    Triangle: TriangleMotion,
+    Sine: SineMotion,
+    Trajectory: TrajectoryMotion,
+    AmplitudeSweep: SweepMotion,
 }
+"""Tables of motions that can be written in several ways."""
+_OF_A_BASE: dict[type, type[Table]] = {Trajectory: BaseTrajectoryMotion}
+"""Those that differ where the base of a lever moves."""
+_OF_PARAMETERS: dict[type, type[Table]] = {Sine: TapMotion}
+"""Those that differ where a mode takes the parameters of a motion and not the motion."""
 
-MOTIONS: dict[str, dict[str, type[Table]]] = {
-    "force-distance": _ANY_MOTION,
-    "force-spectroscopy": {**_ANY_MOTION, "trajectory": BaseTrajectoryMotion},
-    "tapping-cycle": {"sine": TapMotion},
-    "approach-curve": {"sine": SweepMotion},
-}
-"""For each mode the shapes of motion it takes, the default one first."""
 
-CANTILEVERS: dict[str, type[Table]] = {
-    "force-spectroscopy": LeverTable,
-    "approach-curve": ResonatorTable,
-}
-"""For each mode that needs a cantilever its table; the others have no use for one."""
+class FieldsTable(Table):
+    """A table whose keys are the fields of a dataclass."""
+
+    made: ClassVar[type]
+
+    def build(self) -> Any:
+        return self.made(**{key: getattr(self, key) for key in self.model_fields_set})
+
+
+@cache
+def motions_of(mode: Mode) -> dict[str, type[Table]]:
+    """Return the tables of the motions that a mode takes by shape, the default one first."""
+    written = dict(_MOTIONS)
+    written |= _OF_A_BASE if mode.lever else {}
+    written |= {} if mode.takes_motion else _OF_PARAMETERS
+    return {
+        shape: written[motion] if motion in written else table_of(motion)
+        for shape, motion in mode.motions.items()
+    }
+
+
+@cache
+def table_of(made: type) -> type[FieldsTable]:
+    """Return the table of a dataclass, with its units, defaults and docstring."""
+    types = get_type_hints(made, include_extras=True)
+    keys: dict[str, Any] = {
+        f.name: (_written(f.name, types[f.name]), ... if f.default is MISSING else f.default)
+        for f in fields(made)
+    }
+    table = create_model(made.__name__, __base__=FieldsTable, **keys)
+    table.made = made
+    return table
+
+
+def cantilever_of(mode: Mode) -> type[Table] | None:
+    """Return the table of a mode's cantilever, None if it has no use for one."""
+    return {"": None, "stiffness": LeverTable, "resonator": ResonatorTable}[mode.lever]
 
 
 def chosen(
@@ -567,7 +602,7 @@ def chosen(
     if not isinstance(choice, str) or choice not in choices:
         reason = nearest(choice, list(choices))
         if chooser == "law" and isinstance(choice, str):
-            reason = limit(choice) + reason
+            reason = explain_limit(choice) + reason
         raise ConfigError([f"{name}.{chooser} = {shown(choice)}: {reason}"])
     return built(name, written, choices[choice], chooser=chooser, folder=folder)
 
@@ -581,7 +616,9 @@ def built(
         return table.model_validate(keys, context={"folder": folder}).build()
     except ValidationError as invalid:
         valid = [*table.model_fields, *([chooser] if chooser else [])]
-        lines = [problems(name, table, e, valid) for e in invalid.errors(include_url=False)]
+        lines = [
+            describe_problems(name, table, e, valid) for e in invalid.errors(include_url=False)
+        ]
         raise ConfigError([line for several in lines for line in several]) from None
     except (ValueError, ArithmeticError) as error:
-        raise ConfigError([as_written(name, written, error) or f"{name}: {error}"]) from error
+        raise ConfigError([reword(name, written, error) or f"{name}: {error}"]) from error

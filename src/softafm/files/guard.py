@@ -39,7 +39,7 @@ class Unreadable(ValueError):
     """A file that could not be read within its bounds, or not at all."""
 
 
-def seconds_for(path: str | Path) -> float:
+def allow_seconds(path: str | Path) -> float:
     """Return the time that a file has to be read, s."""
     return SECONDS + SECONDS_A_MEGABYTE * Path(path).stat().st_size / 1e6
 
@@ -69,16 +69,16 @@ def read_apart(
     """
     limits = [f"{seconds:g}", str(_OWN_MEMORY + _COPIES * int(largest))]
     command = [sys.executable, "-P", "-B", "-m", "softafm.files.guard", reader, *limits]
-    with _running(command) as process:
+    with _start(command) as process:
         assert process.stdin is not None
         assert process.stdout is not None
-        with _ended_after(process, _SECONDS_TO_START), suppress(BrokenPipeError):
+        with _kill_after(process, _SECONDS_TO_START), suppress(BrokenPipeError):
             process.stdin.write(json.dumps(arguments).encode())
             process.stdin.close()
             process.stdout.readline()
-        with _ended_after(process, seconds) as late:
+        with _kill_after(process, seconds) as late:
             try:
-                return _answer(process.stdout, largest)
+                return _read_answer(process.stdout, largest)
             except Unreadable:
                 raise
             except Exception as problem:  # whatever came, it is no answer
@@ -86,18 +86,18 @@ def read_apart(
                     reason = f"could not be read within {seconds:.3g} s"
                     raise Unreadable(f"{reason}; is it damaged?") from None
                 code = process.wait()
-                reason = f"could not be read ({_ending(code)})"
+                reason = f"could not be read ({_describe_ending(code)})"
                 raise Unreadable(f"{reason}; is it damaged?") from problem
 
 
 @contextmanager
-def _running(command: Sequence[str]) -> Iterator[subprocess.Popen]:
+def _start(command: Sequence[str]) -> Iterator[subprocess.Popen]:
     process = subprocess.Popen(
         command,
         stdin=subprocess.PIPE,
         stdout=subprocess.PIPE,
         stderr=subprocess.DEVNULL,
-        env=environment(),
+        env=make_environment(),
     )
     try:
         yield process
@@ -111,7 +111,7 @@ def _running(command: Sequence[str]) -> Iterator[subprocess.Popen]:
 
 
 @contextmanager
-def _ended_after(process: subprocess.Popen, seconds: float) -> Iterator[Event]:
+def _kill_after(process: subprocess.Popen, seconds: float) -> Iterator[Event]:
     """Kill a process that takes longer; the event tells whether that was done."""
     late = Event()
 
@@ -128,7 +128,7 @@ def _ended_after(process: subprocess.Popen, seconds: float) -> Iterator[Event]:
         timer.cancel()
 
 
-def _answer(stream: IO[bytes], largest: int) -> tuple[Any, list[np.ndarray]]:
+def _read_answer(stream: IO[bytes], largest: int) -> tuple[Any, list[np.ndarray]]:
     told = json.loads(stream.readline(_OWN_MEMORY))
     if "problem" in told:
         raise Unreadable(str(told["problem"])[:_LONGEST_PROBLEM])
@@ -145,7 +145,7 @@ def _answer(stream: IO[bytes], largest: int) -> tuple[Any, list[np.ndarray]]:
     return content, arrays
 
 
-def _ending(code: int) -> str:
+def _describe_ending(code: int) -> str:
     if code >= 0:
         return f"its process ended with exit code {code}"
     with suppress(ValueError):
@@ -153,7 +153,7 @@ def _ending(code: int) -> str:
     return f"its process was ended by signal {-code}"
 
 
-def environment() -> dict[str, str]:
+def make_environment() -> dict[str, str]:
     """Return what a process needs to know of ours: no secrets, and one thread for algebra."""
     kept = {
         name: value

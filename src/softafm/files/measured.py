@@ -6,7 +6,7 @@ from typing import Literal
 
 import numpy as np
 
-from softafm.files.tables import Table, shown
+from softafm.files.tables import Table, quote
 from softafm.instrument.motions import Trajectory
 from softafm.units.quantities import LENGTH, TIME, Kind
 
@@ -59,7 +59,7 @@ def read_path(path: str | Path, moves: Moves = "tip") -> tuple[np.ndarray, np.nd
     table = Table(path, "time (us),height (nm)")
     found = [c for c in map(table.find, ("height", "tip_height", "base_height")) if c is not None]
     if len(found) > 1 and found[0].name == "height":
-        titles = " and ".join(shown(column.title) for column in found)
+        titles = " and ".join(quote(column.title) for column in found)
         raise ValueError(f"has columns {titles}, any of which may be the motion; leave one")
     name = found[0].name if len(found) == 1 else f"{moves}_height" if found else "height"
     time = table.in_si(table.column("time"), TIME)

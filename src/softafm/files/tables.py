@@ -14,7 +14,7 @@ from pathlib import Path
 
 import numpy as np
 
-from softafm.checks.paths import why_no_file
+from softafm.checks.paths import explain_no_file
 from softafm.units.quantities import LARGEST, Kind, is_unit, read_quantity
 
 LARGEST_FILE = 100_000_000
@@ -60,7 +60,7 @@ class Table:
 
     def __init__(self, path: str | Path, example: str):
         self.example = example
-        self._lines = _text(Path(path)).split("\n")
+        self._lines = _read_text(Path(path)).split("\n")
         declared = _DECLARED.fullmatch(self._lines[0])
         if declared:
             self._lines[0] = ""
@@ -71,11 +71,11 @@ class Table:
         ]
         if not data:
             raise ValueError(f"is empty; its header must read, for example, '{example}'")
-        self._header_line = _header_line(self._lines, data[0])
+        self._header_line = _find_header(self._lines, data[0])
         if self._header_line == data[0]:
             del data[0]
         header = self._lines[self._header_line - 1].lstrip("# ")
-        self.separator = declared[1] if declared else _separator(header)
+        self.separator = declared[1] if declared else _find_separator(header)
         (titles,) = self._split([header], [self._header_line])
         while titles and not titles[-1]:
             del titles[-1]
@@ -83,8 +83,8 @@ class Table:
         for number, cells in self._rows:
             between_blanks = self.separator == " " and len(cells) != len(titles)
             if between_blanks or any(cells[len(titles) :]):
-                raise ValueError(self._wrong_width(number, cells, len(titles)))
-        self.columns = self._named(titles)
+                raise ValueError(self._describe_width(number, cells, len(titles)))
+        self.columns = self._name_columns(titles)
 
     def find(self, *names: str) -> Column | None:
         """Return the column that has one of several names, None if none has.
@@ -96,10 +96,10 @@ class Table:
         ValueError
             If several columns have.
         """
-        wanted = set(map(_plain, names))
-        found = [c for c in self.columns if {_plain(c.title), _plain(c.name)} & wanted]
+        wanted = set(map(_simplify, names))
+        found = [c for c in self.columns if {_simplify(c.title), _simplify(c.name)} & wanted]
         if len(found) > 1:
-            titles = " and ".join(shown(column.title) for column in found)
+            titles = " and ".join(quote(column.title) for column in found)
             raise ValueError(f"has more than one column '{names[0]}': {titles}; leave one")
         return found[0] if found else None
 
@@ -107,7 +107,7 @@ class Table:
         """Return the column that has one of several names; ValueError if not just one has."""
         found = self.find(*names)
         if found is None:
-            header = shown(self._lines[self._header_line - 1].strip())
+            header = quote(self._lines[self._header_line - 1].strip())
             raise ValueError(
                 f"has no column '{names[0]}'; its header, line {self._header_line}, reads "
                 f"{header}, with columns separated by {_SEPARATORS[self.separator]}; it must "
@@ -119,15 +119,15 @@ class Table:
         """Return the quantities of a column in SI; ValueError as ``numbers``, or for its unit."""
         if not column.unit:
             raise ValueError(
-                f"column {shown(column.name)} has no unit: it must be that of {kind.noun}, as in "
+                f"column {quote(column.name)} has no unit: it must be that of {kind.noun}, as in "
                 f"'{column.name} ({kind.example.split(maxsplit=1)[1]})'"
             )
         try:
             factor = read_quantity(f"1 {column.unit}", kind)
         except ValueError:
             raise ValueError(
-                f"column {shown(column.title)} must name a unit of {kind.noun}, not "
-                f"{shown(column.unit)}"
+                f"column {quote(column.title)} must name a unit of {kind.noun}, not "
+                f"{quote(column.unit)}"
             ) from None
         return self.numbers(column) * factor
 
@@ -150,22 +150,22 @@ class Table:
     def place(self, row: int) -> str:
         """Return which line of the file a row of numbers, counted from 0, is, and what it reads."""
         line = self._rows[row][0]
-        return f"line {line} ({shown(self._lines[line - 1].strip())})"
+        return f"line {line} ({quote(self._lines[line - 1].strip())})"
 
     def _number(self, line: int, cell: str, column: Column) -> float:
         number = float(cell) if _NUMBER.fullmatch(cell) else None
         if number is not None and abs(number) < LARGEST:
             return number
-        where = f"line {line} ({shown(self._lines[line - 1].strip())})"
+        where = f"line {line} ({quote(self._lines[line - 1].strip())})"
         if not cell:
             others = [s for s in ",;\t" if s != self.separator and s in self._lines[line - 1]]
             hint = f"; columns are separated by {_SEPARATORS[self.separator]}" if others else ""
-            raise ValueError(f"{where} has no {shown(column.name)}{hint}")
+            raise ValueError(f"{where} has no {quote(column.name)}{hint}")
         finite = number is not None and isfinite(number)
         valid = f"a number below {LARGEST:g} in magnitude" if finite else "a finite number"
         raise ValueError(
-            f"{where}: {shown(column.name)} must be {valid}, such as 0.5 or 5e-9; found "
-            f"{shown(cell)}"
+            f"{where}: {quote(column.name)} must be {valid}, such as 0.5 or 5e-9; found "
+            f"{quote(cell)}"
         )
 
     def _require_decimal_commas(self, column: Column):
@@ -175,8 +175,8 @@ class Table:
         points = [(n, cell) for n, _, cell in every if "." in cell and _NUMBER.fullmatch(cell)]
         if commas and points:
             raise ValueError(
-                f"line {points[0][0]} has a decimal point, in {shown(points[0][1])}, and line "
-                f"{commas[0][0]} a comma, in {shown(commas[0][2])}: write all decimals with points"
+                f"line {points[0][0]} has a decimal point, in {quote(points[0][1])}, and line "
+                f"{commas[0][0]} a comma, in {quote(commas[0][2])}: write all decimals with points"
             )
         here = [(n, cell) for n, i, cell in commas if i == column.index]
         if here and all(_THOUSANDS.fullmatch(cell) for _, cell in here):
@@ -184,7 +184,7 @@ class Table:
             raise ValueError(
                 f"line {line}: the comma of {cell} may be a decimal one or separate thousands, "
                 f"{cell.replace(',', '.')} or {cell.replace(',', '')}, as everywhere in column "
-                f"{shown(column.title)}: write decimals with points"
+                f"{quote(column.title)}: write decimals with points"
             )
 
     def _text_of(self, numbers: Sequence[int]) -> list[str]:
@@ -206,20 +206,20 @@ class Table:
             raise ValueError(f"is not a CSV file: line {line}: {error}") from None
         raise ValueError("is not a CSV file: a quoted field goes over several lines")
 
-    def _wrong_width(self, line: int, cells: list[str], columns: int) -> str:
+    def _describe_width(self, line: int, cells: list[str], columns: int) -> str:
         reason = f"columns are separated by {_SEPARATORS[self.separator]}"
         if self.separator == ",":
             reason += ", so decimals need points"
         elif self.separator == " ":
             reason += ", so no field may be empty or hold a blank"
         return (
-            f"line {line} ({shown(self._lines[line - 1].strip())}) has {len(cells)} fields, but "
+            f"line {line} ({quote(self._lines[line - 1].strip())}) has {len(cells)} fields, but "
             f"the header, line {self._header_line}, names {columns}: {reason}"
         )
 
-    def _named(self, titles: Sequence[str]) -> tuple[Column, ...]:
+    def _name_columns(self, titles: Sequence[str]) -> tuple[Column, ...]:
         """Return the columns, and take their units from the first row if it holds them."""
-        named = [_name_and_unit(title) for title in titles]
+        named = [_split_title(title) for title in titles]
         below = [""] * len(titles)
         units = [unit for _, unit in named]
         if self._rows and _holds_units(self._rows[0][1], units):
@@ -228,8 +228,8 @@ class Table:
             for (name, unit), other in zip(named, below, strict=False):
                 if is_unit(unit) and other not in ("", unit):
                     raise ValueError(
-                        f"column {shown(name)} has the unit {shown(unit)} in the header and "
-                        f"{shown(other)} in line {line}"
+                        f"column {quote(name)} has the unit {quote(unit)} in the header and "
+                        f"{quote(other)} in line {line}"
                     )
         return tuple(
             Column(index, title, name, unit or below[index])
@@ -237,10 +237,10 @@ class Table:
         )
 
 
-def _text(path: Path) -> str:
+def _read_text(path: Path) -> str:
     try:
         if not path.is_file():
-            raise ValueError(why_no_file(path))
+            raise ValueError(explain_no_file(path))
         if path.stat().st_size > LARGEST_FILE:
             raise ValueError(f"is larger than {LARGEST_FILE // 1_000_000} MB")
         return path.read_text(encoding="utf-8-sig")
@@ -250,14 +250,14 @@ def _text(path: Path) -> str:
         raise ValueError("is not text in UTF-8; save it as UTF-8") from None
 
 
-def _header_line(lines: Sequence[str], first: int) -> int:
+def _find_header(lines: Sequence[str], first: int) -> int:
     """Return the number of the header's line, where the ``first`` is no comment."""
     above = lines[first - 2].lstrip() if first > 1 else ""
     numbers = re.match(r'\s*"?[+-]?[.,]?[0-9]', lines[first - 1])
     return first - 1 if numbers and above.startswith("#") and above.strip("# \t") else first
 
 
-def _separator(header: str) -> str:
+def _find_separator(header: str) -> str:
     """Return what separates the columns of a header: quoted, it does not; a blank if none does."""
     bare = re.sub(r'(?:^|(?<=[,;\t]))\s*"[^"]*"', "", header)
     if ";" in bare and "\t" in bare:
@@ -265,7 +265,7 @@ def _separator(header: str) -> str:
     return next((separator for separator in ";\t," if separator in bare), " ")
 
 
-def _name_and_unit(title: str) -> tuple[str, str]:
+def _split_title(title: str) -> tuple[str, str]:
     match = _NAME_AND_UNIT.fullmatch(title)
     if match is None:
         return title, ""
@@ -290,10 +290,10 @@ def _is_number(cell: str) -> bool:
     return bool(_NUMBER.fullmatch(cell) or _WITH_COMMA.fullmatch(cell))
 
 
-def shown(text: str) -> str:
+def quote(text: str) -> str:
     """Return a text in quotes, cut to a legible length."""
     return repr(text if len(text) <= _LONGEST_SHOWN else f"{text[: _LONGEST_SHOWN - 3]}...")
 
 
-def _plain(name: str) -> str:
+def _simplify(name: str) -> str:
     return re.sub(r"[\s_]+", " ", name.translate(_PRIMES)).strip().casefold()

@@ -46,6 +46,7 @@ class Trajectory:
     smooth: bool = False
     noise: float | None = None
     """Standard deviation of the noise of a measured path, m; None for samples taken as they are."""
+    _noise_is_estimated: bool = False
 
     def __init__(self, time, height, smooth: bool = False):
         if not isinstance(smooth, bool):
@@ -109,7 +110,7 @@ class Trajectory:
                 "Trajectory takes few samples as they are"
             )
         fit = fit_path(path.time, path.heights, noise)
-        path.noise = fit.noise
+        path.noise, path._noise_is_estimated = fit.noise, noise is None
         path._follow(fit.knots, fit.cubics, fit.corners)
         return path
 
@@ -185,9 +186,8 @@ class Trajectory:
                 "is; else remove outliers, or give steps by their corners to Trajectory",
             )
         if noise > _FAR * misfit + _INVISIBLE:
-            return (
-                f"{found}so large a noise hides motion; state one of about {misfit:.2g} m, or none",
-            )
+            where = "in place of the estimate" if self._noise_is_estimated else "or leave it out"
+            return (f"{found}so large a noise hides motion; state noise = {misfit:.2g} m, {where}",)
         corners, knots = self.corners.size, self._path.x.size
         if corners >= _FEW_CORNERS and knots > _MANY_KNOTS * corners:
             return (

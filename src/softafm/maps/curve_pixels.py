@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 
-from softafm.checks.gathering import Placed, collect_warnings, worst_of_each_kind
+from softafm.checks.gathering import Placed, collect_warnings, keep_worst
 from softafm.errors import AccuracyWarning, DivergedError
 from softafm.maps.imaging import ForceVolume
 from softafm.modes.force_distance import force_distance
@@ -37,7 +37,7 @@ class Curves:
                     values[i] = self._scalars(contact)
             except DivergedError as error:
                 reasons[i] = str(error)
-            told += [(i, each) for each in worst_of_each_kind(found)]
+            told += [(i, each) for each in keep_worst(found)]
         return values, reasons, told
 
     def _scalars(self, contact) -> list[float]:

@@ -6,15 +6,16 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from softafm.checks.refusals import ConfigError, as_written, nearest, one_of, shown, unknown
+from softafm.checks.refusals import ConfigError, nearest, one_of, refuse_unknown, reword, shown
 from softafm.experiment.config import build_table, load_document, set_value
 from softafm.experiment.entries import Frequency, Length, Ratio, Tabor, Tolerance, choice_of
-from softafm.experiment.schema import MOTIONS, Table, built, chosen
+from softafm.experiment.schema import Table, built, chosen
 from softafm.experiment.takers import MAP_MODES, refuse_unless
 from softafm.maps.imaging import AmplitudeModulation, ForceVolume
 from softafm.maps.map_tables import PATTERNS
 from softafm.maps.sample_map import SampleMap
 from softafm.maps.scan import scan
+from softafm.modes import MODES, Mode, approach, force_distance, spectroscopy
 from softafm.progress import Progress
 
 if TYPE_CHECKING:
@@ -68,7 +69,7 @@ class MapExperiment:
                 workers=workers, progress=progress,
             )  # fmt: skip
         except ValueError as error:
-            raise ConfigError([_reworded(self.document, error)]) from error
+            raise ConfigError([_reword(self.document, error)]) from error
         if "material" in result:
             result["material"].attrs |= {
                 "flag_values": [float(i) for i in range(len(self.materials))],
@@ -90,10 +91,10 @@ def load_map(path: str | Path, overrides: Sequence[str] = ()) -> MapExperiment:
     document = load_document(path)
     for override in overrides:
         set_value(document, override)
-    return map_from(document, path.parent)
+    return build_map(document, path.parent)
 
 
-def map_from(document: Mapping[str, Any], folder: Path) -> MapExperiment:
+def build_map(document: Mapping[str, Any], folder: Path) -> MapExperiment:
     """Build the map that a file's tables describe; images are sought in ``folder``.
 
     Raises
@@ -102,14 +103,14 @@ def map_from(document: Mapping[str, Any], folder: Path) -> MapExperiment:
         As ``load_map``.
     """
     mode = document.get("mode")
-    if mode in MOTIONS:
+    if isinstance(mode, str) and mode in MODES:
         refuse_unless(document, "scan")
     if mode is None:
         raise ConfigError([f"mode: missing; must be {one_of(MAP_MODES)}"])
     if mode not in MAP_MODES:
         raise ConfigError([f"mode = {shown(mode)}: {nearest(mode, MAP_MODES)}"])
     known = ["mode", "tip", "cantilever", "motion", "map", "run"]
-    problems = [unknown(key, known, key) for key in document if key not in known]
+    problems = [refuse_unknown(key, known, key) for key in document if key not in known]
 
     def read(name: str, build: Callable[[dict], Any]) -> Any:
         try:
@@ -121,17 +122,17 @@ def map_from(document: Mapping[str, Any], folder: Path) -> MapExperiment:
         except ConfigError as error:
             problems.extend(str(error).splitlines())
 
-    def as_of(mode: str, name: str) -> Any:
+    def as_of(mode: Mode, name: str) -> Any:
         """Read a table as experiments of a mode do."""
         return read(name, lambda written: build_table(name, document, mode, folder))
 
-    tip = as_of("tapping-cycle", "tip")
+    tip = as_of(force_distance.MODE, "tip")
     if mode == "tapping-map":
-        lever = as_of("approach-curve", "cantilever")
+        lever = as_of(approach.MODE, "cantilever")
         motion = read("motion", lambda t: built("motion", t, SetpointMotion, folder=folder))
     else:
-        lever = as_of("force-spectroscopy", "cantilever") if "cantilever" in document else None
-        motion = as_of("force-distance", "motion")
+        lever = as_of(spectroscopy.MODE, "cantilever") if "cantilever" in document else None
+        motion = as_of(force_distance.MODE, "motion")
     table = read(
         "map", lambda t: chosen("map", t, "pattern", PATTERNS, default="uniform", folder=folder)
     )
@@ -148,14 +149,14 @@ def map_from(document: Mapping[str, Any], folder: Path) -> MapExperiment:
         else:
             imaging = ForceVolume(motion, lever)
     except ValueError as error:
-        raise ConfigError([as_written("motion", document["motion"], error) or str(error)]) from None
+        raise ConfigError([reword("motion", document["motion"], error) or str(error)]) from None
     try:
         sample = table.sample_map(tip)
         _ = sample.pixels
     except ConfigError:
         raise
     except ValueError as error:
-        raise ConfigError([as_written("map", document["map"], error) or f"map: {error}"]) from error
+        raise ConfigError([reword("map", document["map"], error) or f"map: {error}"]) from error
     names = tuple(each.name or str(i) for i, each in enumerate(table.materials))
     return MapExperiment(sample, imaging, names, run.tolerance, run.regularise, document)
 
@@ -172,7 +173,7 @@ def _refuse_flow(mode: str, materials: Sequence[Any]) -> None:
             )
 
 
-def _reworded(document: Mapping[str, Any], error: ValueError) -> str:
+def _reword(document: Mapping[str, Any], error: ValueError) -> str:
     """Word what a scan refuses by what the user wrote."""
     written = document["motion"]
     match = re.fullmatch(r"(pixel \(\d+, \d+\)): start height = \S+ m: (.*)", str(error))

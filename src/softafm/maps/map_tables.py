@@ -15,8 +15,8 @@ from softafm.experiment import schema
 from softafm.experiment.config import build_table
 from softafm.experiment.entries import Entries, Extent, Image, Length, Number, Pixels, Ratio, Whole
 from softafm.experiment.schema import Table, built
-from softafm.maps.patterns import blend
-from softafm.maps.sample_map import SampleMap, grey_values, refuse_unknown
+from softafm.maps.patterns import make_blend
+from softafm.maps.sample_map import SampleMap, find_grey_values, refuse_unknown
 
 _ENDS = ("from", "to")
 
@@ -32,7 +32,7 @@ class Material(Table):
     @classmethod
     def _build(cls, written: Any, info: ValidationInfo) -> Any:
         name = str(info.field_name)
-        return build_table(name, {name: written}, None, _folder(info))
+        return build_table(name, {name: written}, None, _find_folder(info))
 
 
 class ImageTable(Table):
@@ -46,14 +46,14 @@ class ImageTable(Table):
         if not raw and (low is None or high is None):
             raise ValueError("give from and to, the values of black and of white")
         try:
-            values = _array(self.image) if raw else _grey(self.image)
+            values = _read_array(self.image) if raw else _read_grey(self.image)
         except ValueError as error:
             raise ValueError(f"image = {self.image.name}: {error}") from None
         return values if raw else low + (high - low) * values
 
 
 @cache
-def _image_table(kind: Any) -> type[Table]:
+def _make_image_table(kind: Any) -> type[Table]:
     """Return the table of an image whose values are written so."""
     keys: dict[str, Any] = dict.fromkeys(_ENDS, (kind | None, None))
     return create_model("ImageTable", __base__=ImageTable, **keys)
@@ -77,7 +77,7 @@ class MapTable(Table):
             if not isinstance(each, dict):
                 raise ConfigError([f"{name} = {shown(each)}: must be a table, [[map.materials]]"])
             try:
-                found.append(built(name, each, Material, folder=_folder(info)))
+                found.append(built(name, each, Material, folder=_find_folder(info)))
             except ConfigError as error:
                 problems += str(error).splitlines()
         if problems:
@@ -98,13 +98,13 @@ class MapTable(Table):
         if not isinstance(written, dict):
             raise ValueError("must be a table, [map.fields]")
         found, problems = {}, []
-        for name, each in _flat(written):
+        for name, each in _flatten(written):
             path = f'fields."{name}"'
             try:
                 for material in info.data.get("materials", ()):
                     _refuse_unknown(path, name, material)
                 kind = schema.KEYS.get(name.partition(".")[2], Number)
-                found[name] = _values(path, each, kind, info)
+                found[name] = _read_values(path, each, kind, info)
             except ConfigError as error:
                 problems += str(error).splitlines()
         if problems:
@@ -114,17 +114,17 @@ class MapTable(Table):
     @field_validator("height")
     @classmethod
     def _build_height(cls, written: Any, info: ValidationInfo) -> np.ndarray:
-        return _values("height", written, Length, info)
+        return _read_values("height", written, Length, info)
 
     def sample_map(self, tip: Any) -> SampleMap:
         """Return the sample; ValueError if arrays do not fit each other or the materials."""
         contacts = [Contact(tip, each.sample, each.surface) for each in self.materials]
-        return self._of(contacts)
+        return self._assign(contacts)
 
-    def _of(self, contacts: list[Contact], labels: Any = None) -> SampleMap:
+    def _assign(self, contacts: list[Contact], labels: Any = None) -> SampleMap:
         return SampleMap(contacts, self.size, self.fields or {}, labels, self.height)
 
-    def _mixed(self, share: np.ndarray, contacts: list[Contact]) -> SampleMap:
+    def _blend(self, share: np.ndarray, contacts: list[Contact]) -> SampleMap:
         one, other = contacts
         try:
             mixed = SampleMap.mixed(share, one, other, self.size)
@@ -159,12 +159,12 @@ class BlendMap(MapTable):
     def sample_map(self, tip: Any) -> SampleMap:
         if not 0 <= self.seed < 2**63:
             raise ValueError(f"seed = {self.seed}: must be a whole number of at least 0")
-        share = blend(
+        share = make_blend(
             self.pixels[::-1], self.size, feature=self.feature, share=self.share,
             interphase=self.interphase, seed=self.seed,
         )  # fmt: skip
         contacts = [Contact(tip, each.sample, each.surface) for each in self.materials]
-        return self._mixed(share, contacts) if self.interphase else self._of(contacts, share)
+        return self._blend(share, contacts) if self.interphase else self._assign(contacts, share)
 
 
 class ShareMap(MapTable):
@@ -175,7 +175,7 @@ class ShareMap(MapTable):
 
     def sample_map(self, tip: Any) -> SampleMap:
         contacts = [Contact(tip, each.sample, each.surface) for each in self.materials]
-        return self._mixed(_read(_grey, self.file), contacts)
+        return self._blend(_read(_read_grey, self.file), contacts)
 
 
 class LabelMap(MapTable):
@@ -186,15 +186,15 @@ class LabelMap(MapTable):
     def sample_map(self, tip: Any) -> SampleMap:
         contacts = [Contact(tip, each.sample, each.surface) for each in self.materials]
         if _is_array(self.file):
-            return self._of(contacts, _read(_array, self.file))
-        grey = _read(_grey, self.file)
+            return self._assign(contacts, _read(_read_array, self.file))
+        grey = _read(_read_grey, self.file)
         levels, labels = np.unique(grey, return_inverse=True)
         if levels.size != len(contacts):
             raise ValueError(
                 f"file = {self.file.name}: has {levels.size} greys, but there are {len(contacts)} "
                 "materials; save it without compression losses and soft edges"
             )
-        return self._of(contacts, labels.reshape(grey.shape))
+        return self._assign(contacts, labels.reshape(grey.shape))
 
 
 PATTERNS: dict[str, type[Table]] = {
@@ -206,11 +206,11 @@ PATTERNS: dict[str, type[Table]] = {
 """What ``pattern`` in ``[map]`` can choose."""
 
 
-def _folder(info: ValidationInfo) -> Path:
+def _find_folder(info: ValidationInfo) -> Path:
     return info.context["folder"] if info.context else Path()
 
 
-def _flat(written: Mapping[str, Any]) -> Iterator[tuple[str, Any]]:
+def _flatten(written: Mapping[str, Any]) -> Iterator[tuple[str, Any]]:
     """Yield fields by name; TOML makes tables within tables of keys without quotes."""
     for name, each in written.items():
         if name in ("sample", "surface") and isinstance(each, dict):
@@ -227,11 +227,11 @@ def _refuse_unknown(path: str, name: str, material: Material) -> None:
         raise ConfigError([f"{path}: {reason}"]) from None
 
 
-def _values(path: str, written: Any, kind: Any, info: ValidationInfo) -> np.ndarray:
+def _read_values(path: str, written: Any, kind: Any, info: ValidationInfo) -> np.ndarray:
     """Return the array that an inline table of an image stands for."""
     if not isinstance(written, dict):
         raise ConfigError([f"{path} = {shown(written)}: must be a table with image, from and to"])
-    return built(path, written, _image_table(kind), folder=_folder(info))
+    return built(path, written, _make_image_table(kind), folder=_find_folder(info))
 
 
 def _is_array(path: Path) -> bool:
@@ -245,15 +245,15 @@ def _read(read: Any, path: Path) -> np.ndarray:
         raise ValueError(f"file = {path.name}: {error}") from None
 
 
-def _grey(path: Path) -> np.ndarray:
+def _read_grey(path: Path) -> np.ndarray:
     """Return the grey values of an image, or of an array from 0 to 1."""
     try:
-        return grey_values(_array(path) if _is_array(path) else path)
+        return find_grey_values(_read_array(path) if _is_array(path) else path)
     except ValueError as error:
         raise ValueError(str(error).removeprefix(f"{path}: ")) from None
 
 
-def _array(path: Path) -> np.ndarray:
+def _read_array(path: Path) -> np.ndarray:
     """Return the array of an .npy file."""
     try:
         with path.open("rb") as file:

@@ -11,7 +11,7 @@ _SIGMAS = 4
 """Standard deviations of the smoothing in the width of an interphase."""
 
 
-def blend(
+def make_blend(
     shape: tuple[int, int],
     size: tuple[float, float],
     *,

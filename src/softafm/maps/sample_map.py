@@ -74,11 +74,11 @@ class SampleMap:
             raise ValueError("materials: must all have the same tip, as one tip scans them")
         if self.labels is None and len(materials) > 1:
             raise ValueError(f"labels: missing; must tell which of {len(materials)} materials")
-        arrays = {name: _image(name, values) for name, values in dict(self.fields).items()}
+        arrays = {name: _check_image(name, values) for name, values in dict(self.fields).items()}
         if self.labels is not None:
-            arrays["labels"] = _image("labels", self.labels)
+            arrays["labels"] = _check_image("labels", self.labels)
         if self.height is not None:
-            arrays["height"] = _image("height", self.height)
+            arrays["height"] = _check_image("height", self.height)
         if not arrays:
             raise ValueError("fields = {}: must hold an array; or give labels or height")
         first, shape = next((name, array.shape) for name, array in arrays.items())
@@ -100,7 +100,7 @@ class SampleMap:
             for material in materials:
                 refuse_unknown(name, material)
         for name, value in (
-            ("materials", materials), ("size", _size(self.size, shape)), ("fields", arrays),
+            ("materials", materials), ("size", _check_size(self.size, shape)), ("fields", arrays),
             ("labels", labels.astype(int)), ("height", height),
         ):  # fmt: skip
             object.__setattr__(self, name, value)
@@ -120,7 +120,7 @@ class SampleMap:
         """
         refuse_other("one", one, Contact, "a softafm.Contact")
         refuse_other("other", other, Contact, "a softafm.Contact")
-        share = _image("share", share)
+        share = _check_image("share", share)
         wrong = np.argwhere((share < 0) | (share > 1))
         if wrong.size:
             i, j = wrong[0]
@@ -164,7 +164,7 @@ class SampleMap:
             Pairs of values in SI by field, such as ``{"sample.E_inf": (0.1e9, 1.9e9), "height": (0,
             5e-9)}``.
         """
-        grey = grey_values(image)
+        grey = find_grey_values(image)
         arrays = {}
         for name, ends in ranges.items():
             try:
@@ -180,7 +180,7 @@ class SampleMap:
         cls, image, materials: Sequence[Contact], size, height=None
     ) -> "SampleMap":
         """Build a map from an image with one grey for each material, the darkest for the first."""
-        grey = grey_values(image)
+        grey = find_grey_values(image)
         levels, labels = np.unique(grey, return_inverse=True)
         if levels.size != len(materials):
             raise ValueError(
@@ -222,7 +222,11 @@ class SampleMap:
         for part in _PARTS:
             thing = getattr(material, part)
             own = {name: value for (kind, name), value in _split(values) if kind == part}
-            work = None if _has(thing, "work_of_adhesion") else own.pop("work_of_adhesion", None)
+            work = (
+                None
+                if _has_number(thing, "work_of_adhesion")
+                else own.pop("work_of_adhesion", None)
+            )
             try:
                 thing = replace(thing, **own)
                 if work is not None:
@@ -234,7 +238,7 @@ class SampleMap:
         return replace(material, **parts) if values else material
 
 
-def grey_values(image) -> np.ndarray:
+def find_grey_values(image) -> np.ndarray:
     """Return an image's grey values from 0, black, to 1, white; arrays must be so already."""
     if isinstance(image, str | Path):
         from PIL import Image, UnidentifiedImageError
@@ -248,7 +252,7 @@ def grey_values(image) -> np.ndarray:
         except OSError as error:
             raise ValueError(f"{image}: {error.strerror or 'cannot be read'}") from None
         return grey / (65535.0 if deep else 255.0)
-    grey = _image("image", image)
+    grey = _check_image("image", image)
     wrong = np.argwhere((grey < 0) | (grey > 1))
     if wrong.size:
         i, j = wrong[0]
@@ -256,7 +260,7 @@ def grey_values(image) -> np.ndarray:
     return grey
 
 
-def _image(name: str, values) -> np.ndarray:
+def _check_image(name: str, values) -> np.ndarray:
     """Return the values of all pixels as floats, or raise ValueError naming the one that is not."""
     refuse_masked(name, values)
     try:
@@ -275,7 +279,7 @@ def _image(name: str, values) -> np.ndarray:
     return array
 
 
-def _size(size, shape) -> tuple[float, float]:
+def _check_size(size, shape) -> tuple[float, float]:
     if np.ndim(size) == 0:
         width = positive("size", size, "m")
         return width, width * shape[0] / shape[1]
@@ -288,7 +292,7 @@ def _split(values: Mapping[str, float]):
     return [(tuple(name.split(".", 1)), value) for name, value in values.items()]
 
 
-def _has(thing, name: str) -> bool:
+def _has_number(thing, name: str) -> bool:
     return any(entry.name == name for entry in fields(thing))
 
 

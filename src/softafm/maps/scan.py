@@ -20,7 +20,7 @@ from softafm.maps.imaging import AmplitudeModulation, ForceVolume
 from softafm.maps.sample_map import SampleMap
 from softafm.modes.start import refuse_start_inside, refuse_tapped_flow, refuse_unable, solver_of
 from softafm.progress import Progress, reporting
-from softafm.results.datasets import curve_dataset, describe, misfit_attributes
+from softafm.results.datasets import dataset, describe, describe_misfit
 
 if TYPE_CHECKING:
     from xarray import Dataset
@@ -90,30 +90,30 @@ def scan(
     contacts = sample.pixels.contacts
     if regularise is not None:
         tabor = tabor_of("regularise", regularise)
-        contacts = [_at_pixel(sample, i, c.regularised, tabor) for i, c in enumerate(contacts)]
+        contacts = [_call_at_pixel(sample, i, c.regularised, tabor) for i, c in enumerate(contacts)]
     take: Callable
     if isinstance(imaging, AmplitudeModulation):
-        take, refuse = _tapped, refuse_tapped_flow
+        take, refuse = _tap_map, refuse_tapped_flow
     else:
         refuse_unable(solver, imaging.motion)
-        take, refuse = _curves, partial(refuse_start_inside, motion=imaging.motion)
+        take, refuse = _take_curves, partial(refuse_start_inside, motion=imaging.motion)
     for i, contact in enumerate(contacts):
-        _at_pixel(sample, i, refuse, contact)
+        _call_at_pixel(sample, i, refuse, contact)
     with reporting(progress) as report:
         names, values, failures, told, done = take(
             sample, contacts, imaging, solver, tolerance, workers, report
         )
-    warned = _warnings(failures, told, sample)
+    warned = _collect_warnings(failures, told, sample)
     for warning in warned:
         warnings.warn(warning, stacklevel=2)
-    result = _dataset(sample, imaging, solver, tolerance, names, values, warned, done)
+    result = _assemble(sample, imaging, solver, tolerance, names, values, warned, done)
     result.attrs["failures"] = json.dumps(failures)
     if regularise is not None:
         result.attrs["regularised_tabor"] = float(regularise)
     return result
 
 
-def _at_pixel(sample: SampleMap, number: int, function, *arguments):
+def _call_at_pixel(sample: SampleMap, number: int, function, *arguments):
     """Call a function on behalf of a contact; its ValueError names the first such pixel."""
     try:
         return function(*arguments)
@@ -122,16 +122,16 @@ def _at_pixel(sample: SampleMap, number: int, function, *arguments):
         raise ValueError(f"pixel ({i}, {j}): {error}") from None
 
 
-def _tapped(sample, contacts, imaging, solver, tolerance, workers, report):
+def _tap_map(sample, contacts, imaging, solver, tolerance, workers, report):
     """Go down the first column, along a few lines, then along all others."""
     pixels = sample.pixels
     spots = [
         tapped_lines.Spot(i, *each)
         for i, each in enumerate(zip(contacts, pixels.place, pixels.label.tolist(), strict=True))
     ]
-    setpoint, known = tapped_lines.setpoint_of(imaging, solver, tolerance), tapped_lines.Known()
+    setpoint, known = tapped_lines.make_setpoint(imaging, solver, tolerance), tapped_lines.Known()
     first = contacts[pixels.number[0, 0]]
-    branch = tapped_lines.engaged_branch(imaging, first, solver, tolerance)
+    branch = tapped_lines.find_engaged_branch(imaging, first, solver, tolerance)
     column = tapped_lines.walk(setpoint, [spots[i] for i in pixels.number[:, 0]], branch, known)
     branches = [branch, *column.values[:, tapped_lines.NAMES.index("branch")]]
     for row in range(1, len(branches)):  # where a pixel failed, the branch is that before it
@@ -144,7 +144,7 @@ def _tapped(sample, contacts, imaging, solver, tolerance, workers, report):
     by_row = {row: tapped_lines.walk(setpoint, lines[row], starts[row], known) for row in rehearsed}
     others = [row for row in range(len(lines)) if row not in by_row]
     tasks = [(lines[row], starts[row], known) for row in others]
-    found = _each(partial(_line, setpoint), tasks, workers, report, "line")
+    found = _run_each(partial(_tap_line, setpoint), tasks, workers, report, "line")
     by_row |= dict(zip(others, found, strict=True))
     taken = [by_row[row] for row in range(len(lines))]
     values = np.array([each.values for each in taken])
@@ -158,17 +158,17 @@ def _tapped(sample, contacts, imaging, solver, tolerance, workers, report):
     return tapped_lines.NAMES, values, failures, told, {"taps": taps}
 
 
-def _line(setpoint, task) -> tapped_lines.Taken:
+def _tap_line(setpoint, task) -> tapped_lines.Taken:
     """Take one line, from what is known of the first column and the lines rehearsed."""
     spots, branch, known = task
     return tapped_lines.walk(setpoint, spots, branch, known.copy())
 
 
-def _curves(sample, contacts, imaging, solver, tolerance, workers, report):
+def _take_curves(sample, contacts, imaging, solver, tolerance, workers, report):
     """Take a force curve of each different contact."""
     tasks = [contacts[i : i + _CURVES_A_TASK] for i in range(0, len(contacts), _CURVES_A_TASK)]
     curves = curve_pixels.Curves(imaging, solver, tolerance)
-    taken = list(_each(curves, tasks, workers, report, "curves"))
+    taken = list(_run_each(curves, tasks, workers, report, "curves"))
     table = np.concatenate([values for values, _, _ in taken])
     reasons = {
         task * _CURVES_A_TASK + i: reason
@@ -188,10 +188,10 @@ def _curves(sample, contacts, imaging, solver, tolerance, workers, report):
     return curve_pixels.NAMES, table[number], failures, told, {"curves": len(contacts)}
 
 
-def _each(function: Callable, tasks: list, workers: int, report, noun: str) -> Iterator[Any]:
+def _run_each(function: Callable, tasks: list, workers: int, report, noun: str) -> Iterator[Any]:
     """Yield what a function makes of tasks, in their order, from so many processes."""
 
-    def told(results):
+    def count(results):
         for done, result in enumerate(results, start=1):
             if report is not None:
                 report(done / len(tasks), f"{noun} {done} of {len(tasks)}")
@@ -199,12 +199,12 @@ def _each(function: Callable, tasks: list, workers: int, report, noun: str) -> I
 
     workers = min(workers, len(tasks))
     if workers == 1:
-        yield from told(map(function, tasks))
+        yield from count(map(function, tasks))
         return
     try:
         # Not forked: threads of libraries would be cut in the middle of what they do.
         with ProcessPoolExecutor(workers, mp_context=get_context("spawn")) as pool:
-            yield from told(pool.map(function, tasks))
+            yield from count(pool.map(function, tasks))
     except BrokenProcessPool:
         raise RuntimeError(
             f"workers = {workers}: a process of them ended. Does the script begin its work under "
@@ -212,7 +212,7 @@ def _each(function: Callable, tasks: list, workers: int, report, noun: str) -> I
         ) from None
 
 
-def _warnings(failures, told: list[Placed], sample: SampleMap) -> list[AccuracyWarning]:
+def _collect_warnings(failures, told: list[Placed], sample: SampleMap) -> list[AccuracyWarning]:
     """What to warn of: pixels without a result, and what solvers said."""
     number = sample.pixels.number
 
@@ -231,7 +231,7 @@ def _warnings(failures, told: list[Placed], sample: SampleMap) -> list[AccuracyW
     return [*failed, *gather(told, len(sample.pixels.contacts), "different pixels", where)]
 
 
-def _dataset(sample, imaging, solver, tolerance, names, values, warned, done) -> "Dataset":
+def _assemble(sample, imaging, solver, tolerance, names, values, warned, done) -> "Dataset":
     """Assemble the maps, the fields of the sample and the provenance."""
     from xarray import Variable
 
@@ -246,11 +246,11 @@ def _dataset(sample, imaging, solver, tolerance, names, values, warned, done) ->
         "x": ("x", (np.arange(nx) + 0.5) * width / nx),
     }
     parts = {
-        "materials": {str(i): _described(each) for i, each in enumerate(sample.materials)},
+        "materials": {str(i): _describe(each) for i, each in enumerate(sample.materials)},
         "map": {"size": [width, depth], "fields": list(sample.fields)},
         "imaging": describe(imaging),
     }
-    result = curve_dataset(
+    result = dataset(
         imaging.kind, sample.materials[0], parts, solver, tolerance, data, coordinates, warned, done
     )
     for name, array in sample.fields.items():
@@ -264,12 +264,12 @@ def _dataset(sample, imaging, solver, tolerance, names, values, warned, done) ->
             "flag_meanings": "attractive repulsive",
         }
     of_one = ("tabor_instantaneous", "tabor_relaxed", "cohesive_length")
-    for name in (*of_one, *misfit_attributes(sample.materials[0].rheology)):
+    for name in (*of_one, *describe_misfit(sample.materials[0].rheology)):
         del result.attrs[name]  # there is not one of them
     result.attrs["different_pixels"] = len(sample.pixels.contacts)
     return result
 
 
-def _described(contact) -> dict:
+def _describe(contact) -> dict:
     parts = {name: describe(getattr(contact, name)) for name in ("tip", "sample", "surface")}
-    return {**parts, **misfit_attributes(contact.rheology)}
+    return {**parts, **describe_misfit(contact.rheology)}

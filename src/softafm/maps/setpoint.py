@@ -18,7 +18,7 @@ from softafm.instrument.oscillator import Drive
 from softafm.modes.amplitude_curve import AmplitudeCurve
 from softafm.modes.approach import doubt_sine
 from softafm.modes.tap_map import OBSERVABLES, TapMap
-from softafm.modes.tapping import tap_observables
+from softafm.modes.tapping import observe_taps
 
 ATTRACTIVE, REPULSIVE = 0, 1
 BRANCHES = ("attractive", "repulsive")
@@ -88,8 +88,8 @@ class Setpoint:
             motion = Sine(amplitude + approach, amplitude, self.frequency, "steady")
             history = self.solver.solve(contact, motion, tolerance=self.tolerance)
         self.taps += 1
-        found = tap_observables(contact, motion, history)
-        return np.array([found[name][1] for name in OBSERVABLES])
+        found = observe_taps(contact, motion, history)
+        return np.array([found[name] for name in OBSERVABLES])
 
     def excess(self, values) -> float:
         """Force needed over that of the drive, less 1."""
@@ -128,7 +128,7 @@ class Setpoint:
             step = -excess / slope
             close = _CLOSE if measured else _VERY_CLOSE
             if abs(excess) <= close * self.tolerance and abs(step) <= near * close:
-                return self._held(
+                return self._keep_if_held(
                     Point(approach + step, values + step * slopes, slopes, start.branch, measured)
                 )
             last = approach, values
@@ -158,7 +158,7 @@ class Setpoint:
                 points.append(Point(approach, values, slopes, BRANCHES.index(branch), True))
         return sorted(points, key=lambda point: -point.approach)
 
-    def anew(self, contact, branch: int) -> Point:
+    def start_anew(self, contact, branch: int) -> Point:
         """Solution on a branch, or on the other one if there is none; raises ``Lost``."""
         points = self.survey(contact)
         same = [point for point in points if point.branch == branch]
@@ -168,7 +168,7 @@ class Setpoint:
         exact = self.follow(contact, chosen, chosen.approach)
         return (chosen if exact is None else exact)._replace(measured=True, surveyed=True)
 
-    def carried(
+    def carry(
         self, contact, start: Point | None, guess: float, branch: int, other_guess: float
     ) -> Point:
         """Solution on the branch that a lever comes along, or that it jumps to.
@@ -186,15 +186,15 @@ class Setpoint:
             if start is not None:
                 point = self.follow(contact, start, guess)
                 if point is not None:
-                    if self._plain(point):
+                    if self._is_plain(point):
                         return point
                     if abs(point.approach - other_guess) < _SAME * contact.reach:
                         return point._replace(branch=1 - branch)
-            return self.anew(contact, branch)
+            return self.start_anew(contact, branch)
         except DivergedError as error:
             raise Lost(str(error)) from None
 
-    def _plain(self, point: Point) -> bool:
+    def _is_plain(self, point: Point) -> bool:
         """Whether the phase alone says that it is the branch it is."""
         return (self.phase(point.values) > 90) == (point.branch == ATTRACTIVE)
 
@@ -205,7 +205,7 @@ class Setpoint:
         change = c * -2 * slopes[0] / A + s * slopes[1] / (np.pi * A)
         return float(change / (np.hypot(c, s) * self.drive.force))
 
-    def _held(self, point: Point) -> Point | None:
+    def _keep_if_held(self, point: Point) -> Point | None:
         """The point if a feedback can hold it; along A, taps change nearly as √A."""
         V, E = point.values[:2]
         along = point.values[:2] / (2 * self.amplitude) - point.slopes[:2]

@@ -13,7 +13,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from softafm.checks.gathering import Placed, worst_of_each_kind
+from softafm.checks.gathering import Placed, keep_worst
 from softafm.checks.validate import tolerance_of
 from softafm.errors import AccuracyWarning, DivergedError
 from softafm.maps.imaging import AmplitudeModulation
@@ -55,7 +55,7 @@ class Known:
         if point.measured:
             self.bases.setdefault((spot.label, point.branch), []).append((spot.place, point))
 
-    def near(self, spot: Spot, branch: int, unit: float) -> tuple[Point, float] | None:
+    def find_near(self, spot: Spot, branch: int, unit: float) -> tuple[Point, float] | None:
         """Solution to start from, and the closest approach, m, that its neighbours predict."""
         bases = self.bases.get((spot.label, branch))
         if not bases:
@@ -71,7 +71,7 @@ class Known:
         change = float(np.clip(-offsets[order[0]] @ slope, -unit, unit))
         return first, first.approach + change
 
-    def past_its_end(self, spot: Spot, branch: int) -> bool:
+    def is_past_end(self, spot: Spot, branch: int) -> bool:
         """Whether a branch is gone at a place between here and where it is known to exist."""
         gone = self.gone.get((spot.label, branch))
         bases = self.bases.get((spot.label, branch))
@@ -100,7 +100,7 @@ class Taken:
     taps: int
 
 
-def setpoint_of(imaging: AmplitudeModulation, solver, tolerance: float) -> Setpoint:
+def make_setpoint(imaging: AmplitudeModulation, solver, tolerance: float) -> Setpoint:
     """Return what finds the taps of a way of imaging."""
     drive, frequency = drive_of(imaging.cantilever, imaging.free_amplitude, imaging.drive_frequency)
     amplitude = imaging.setpoint * imaging.free_amplitude
@@ -117,10 +117,10 @@ def walk(setpoint: Setpoint, spots: list[Spot], branch: int, known: Known) -> Ta
         key = spot.number, branch
         if key not in known.solved:
             setpoint.told.clear()
-            known.solved[key] = _solved(setpoint, spot, branch, known, last)
+            known.solved[key] = _solve(setpoint, spot, branch, known, last)
             if isinstance(point := known.solved[key], Point):
                 setpoint.doubt(point)
-            told += [(spot.number, each) for each in worst_of_each_kind(setpoint.told)]
+            told += [(spot.number, each) for each in keep_worst(setpoint.told)]
         found = known.solved[key]
         if isinstance(found, str):
             reasons[i] = found
@@ -131,18 +131,18 @@ def walk(setpoint: Setpoint, spots: list[Spot], branch: int, known: Known) -> Ta
     return Taken(values, reasons, told, setpoint.taps - started)
 
 
-def _solved(setpoint, spot: Spot, branch: int, known: Known, last: Point | None) -> Point | str:
+def _solve(setpoint, spot: Spot, branch: int, known: Known, last: Point | None) -> Point | str:
     """The solution of one contact that is new, or why there is none."""
     unit, other = spot.contact.reach, 1 - branch
-    near, crossed = known.near(spot, branch, unit), known.near(spot, other, unit)
+    near, crossed = known.find_near(spot, branch, unit), known.find_near(spot, other, unit)
     if near is None and last is not None and last.branch == branch:
         near = last, last.approach
     other_guess = np.nan if crossed is None else crossed[1]
-    if crossed is not None and known.past_its_end(spot, branch):
+    if crossed is not None and known.is_past_end(spot, branch):
         near, other_guess = crossed, np.nan
     start, guess = near or (None, np.nan)
     try:
-        point = setpoint.carried(spot.contact, start, guess, branch, other_guess)
+        point = setpoint.carry(spot.contact, start, guess, branch, other_guess)
     except Lost as reason:
         return str(reason)
     if point.surveyed and point.branch != branch:
@@ -151,7 +151,7 @@ def _solved(setpoint, spot: Spot, branch: int, known: Known, last: Point | None)
     return point
 
 
-def engaged_branch(imaging: AmplitudeModulation, contact, solver, tolerance: float) -> int:
+def find_engaged_branch(imaging: AmplitudeModulation, contact, solver, tolerance: float) -> int:
     """Branch on which a lever that comes down meets the setpoint."""
     if imaging.engaged != "approach":
         return ATTRACTIVE if imaging.engaged == "attractive" else REPULSIVE

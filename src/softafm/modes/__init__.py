@@ -1,0 +1,29 @@
+"""The modes of an AFM, one a file; the table lists them in the order in which they are offered."""
+
+from softafm.modes import approach, force_distance, spectroscopy, tapping
+from softafm.modes.mode import MODES, Axes, Foreseen, Inputs, Layout, Mode, Row, register
+from softafm.modes.perform import Outcome, Settings, perform
+from softafm.modes.scales import Scales
+from softafm.results.content import Observable, observables
+
+__all__ = [
+    "MODES",
+    "Axes",
+    "Foreseen",
+    "Inputs",
+    "Layout",
+    "Mode",
+    "Observable",
+    "Outcome",
+    "Row",
+    "Scales",
+    "Settings",
+    "observables",
+    "perform",
+    "register",
+]
+
+register(force_distance.MODE)
+register(spectroscopy.MODE)
+register(tapping.MODE)
+register(approach.MODE)

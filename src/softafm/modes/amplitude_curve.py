@@ -75,7 +75,7 @@ class AmplitudeCurve:
         found = self.at_heights(heights)
         columns = np.vstack([found.amplitude, found.phase, self.observables(found)])
         there = range(heights.size)
-        return tuple(_taken(columns, found, way) for way in (there, reversed(there)))
+        return tuple(_follow(columns, found, way) for way in (there, reversed(there)))
 
     def _excess(self, amplitude, approach):
         values = self._taps.virial_and_dissipation(amplitude, approach)
@@ -92,7 +92,7 @@ class AmplitudeCurve:
         return Solutions(row, amplitude, approach, self._drive.phase(amplitude, *values), stable)
 
 
-def _taken(columns, found: Solutions, way) -> np.ndarray:
+def _follow(columns, found: Solutions, way) -> np.ndarray:
     """Return the column of ``columns`` (m, solutions) that a lever takes in each row of ``found``.
 
     ``way`` is the order in which the rows, all of them, are passed.
@@ -103,8 +103,8 @@ def _taken(columns, found: Solutions, way) -> np.ndarray:
         choices = np.flatnonzero((found.row == row) & found.stable)
         if choices.size:
             wanted = found.amplitude[choices].max() if last is None else last
-            taken = choices[np.argmin(np.abs(found.amplitude[choices] - wanted))]
-            last, values[:, row] = found.amplitude[taken], columns[:, taken]
+            nearest = choices[np.argmin(np.abs(found.amplitude[choices] - wanted))]
+            last, values[:, row] = found.amplitude[nearest], columns[:, nearest]
     return values
 
 

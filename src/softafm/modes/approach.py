@@ -3,13 +3,14 @@
 Rajabifar et al. 2021, equations (29) to (32), and their general form off resonance.
 """
 
-import warnings
+import json
 from collections.abc import Iterator
-from functools import partial
-from typing import TYPE_CHECKING
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from softafm.checks.callers import warn_caller
 from softafm.checks.gathering import Placed, collect_warnings, gather
 from softafm.checks.validate import finite, positive, refuse_masked, tolerance_of
 from softafm.contact import Contact
@@ -18,23 +19,22 @@ from softafm.instrument.cantilever import Cantilever
 from softafm.instrument.motions import Sine
 from softafm.instrument.oscillator import Drive
 from softafm.modes.amplitude_curve import BRANCHES, AmplitudeCurve, Solutions
-from softafm.modes.check import Scales, checked, finer_run
-from softafm.modes.start import (
-    refuse_other_than_cantilever,
-    refuse_tapped_flow,
-    regularised,
-    solver_of,
-)
+from softafm.modes.mode import Axes, Foreseen, Inputs, Mode, Row
+from softafm.modes.perform import Outcome, Settings, perform
+from softafm.modes.scales import Scales, tap_scales
+from softafm.modes.start import refuse_tapped_flow, solver_of
 from softafm.modes.tap_map import OBSERVABLES, TapMap
-from softafm.modes.tapping import tap_observables
+from softafm.modes.tapping import observe_taps
 from softafm.progress import Progress, reporting
-from softafm.results.datasets import curve_dataset, record_regularisation
-from softafm.units.quantities import readable
+from softafm.results.content import DIRECTIONS, observables
+from softafm.units.quantities import write_quantity
 
 if TYPE_CHECKING:
     from xarray import Dataset
 
 _HEIGHTS, _CHECKS = 241, 6
+_TAPS = 130
+"""How many taps an approach curve takes, by experience."""
 _SINE = 0.02
 """Second harmonic over the first up to which the tip moves as a sine."""
 
@@ -93,14 +93,29 @@ def approach_curve(
     DivergedError
         If the solver cannot continue.
     """
-    finer = finer_run(check, solver, tolerance)
-    given, contact = contact, regularised(contact, regularise)
-    tolerance, solver = tolerance_of(tolerance), solver_of(solver)
-    refuse_other_than_cantilever(cantilever)
+    return perform(
+        MODE, contact, AmplitudeSweep(free_amplitude, amplitude_ratio, drive_frequency), cantilever,
+        solver=solver, tolerance=tolerance, progress=progress, check=check, regularise=regularise,
+    )  # fmt: skip
+
+
+@dataclass(frozen=True)
+class AmplitudeSweep:
+    """What ``approach_curve`` takes besides contact and cantilever."""
+
+    free_amplitude: float
+    amplitude_ratio: Any
+    drive_frequency: float | None = None
+
+
+def _simulate(inputs: Inputs, settings: Settings) -> Outcome:
+    """Sample taps, and find the solutions and the sweep of the height on them."""
+    contact, sweep = inputs.contact, inputs.motion
+    tolerance, solver = tolerance_of(settings.tolerance), solver_of(settings.solver)
     refuse_tapped_flow(contact)
-    ratios = _ratios(amplitude_ratio)
-    free_amplitude = positive("free_amplitude", free_amplitude, "m")
-    drive, frequency = drive_of(cantilever, free_amplitude, drive_frequency)
+    ratios = _ratios(sweep.amplitude_ratio)
+    free_amplitude = positive("free_amplitude", sweep.free_amplitude, "m")
+    drive, frequency = drive_of(inputs.cantilever, free_amplitude, sweep.drive_frequency)
 
     doubts: list[Placed] = []
 
@@ -110,41 +125,33 @@ def approach_curve(
             motion = Sine(amplitude + approach, amplitude, frequency, "steady")
             history = solver.solve(contact, motion, tolerance=tolerance)
         doubts.extend(((amplitude, approach), warning) for warning in warned)
-        found = tap_observables(contact, motion, history)
-        return np.array([found[name][1] for name in OBSERVABLES])
+        found = observe_taps(contact, motion, history)
+        return np.array([found[name] for name in OBSERVABLES])
 
     taps = TapMap(
         tap, drive.excess, ratios.min() * free_amplitude, ratios.max() * free_amplitude,
         contact.reach, tolerance,
     )  # fmt: skip
-    with reporting(progress) as report:
+    with reporting(settings.progress) as report:
         for done in taps.explore():
             if report is not None:
                 report(1 - np.exp(-done / 80), f"{done} taps")
     curve = AmplitudeCurve(taps, drive)
     found = curve.at_amplitudes(ratios * free_amplitude)
     doubtful = list(_warnings(taps, tap, drive, tolerance, found))
-    checks = _checked(found).size
+    checks = _solutions_to_check(found).size
     warned = [*gather(doubts, taps.taps + checks, "taps", _where), *doubtful]
     for warning in warned:
-        warnings.warn(warning, stacklevel=2)
-    data, coordinates = _tables(curve, ratios, found)
+        warn_caller(warning)
     motion = {
         "kind": "approach-curve",
         "free_amplitude": free_amplitude,
         "amplitude_ratio": ratios.tolist(),
         "drive_frequency": frequency,
     }
-    result = curve_dataset(
-        "approach-curve", contact, {"motion": motion, "cantilever": cantilever}, solver, tolerance,
-        data, coordinates, warned, {"taps": taps.taps},
-    )  # fmt: skip
-    record_regularisation(result, given, contact, regularise)
-    repeat = partial(
-        approach_curve, contact, cantilever, free_amplitude, ratios, drive_frequency=drive_frequency
-    )
-    scales = Scales.of_taps(contact, ratios * free_amplitude, frequency)
-    return checked(result, finer, tolerance, scales, repeat, progress)
+    parts = {**inputs.parts, "motion": motion}
+    data, coordinates = _tables(curve, ratios, found)
+    return Outcome(parts, solver, tolerance, data, coordinates, tuple(warned), {"taps": taps.taps})
 
 
 def drive_of(cantilever: Cantilever, free_amplitude, drive_frequency=None) -> tuple[Drive, float]:
@@ -187,7 +194,7 @@ def doubt_sine(drive: Drive, amplitude, virial, dissipation) -> AccuracyWarning 
     worst = int(shares.argmax())
     if shares[worst] <= _SINE:
         return None
-    off = readable(float(shares[worst] * np.atleast_1d(amplitude)[worst]), "m")
+    off = write_quantity(float(shares[worst] * np.atleast_1d(amplitude)[worst]), "m")
     text = (
         f"the lever does not move as the sine that is assumed: its second harmonic is {off}, "
         f"{shares[worst]:.2g} of the amplitude, at quality_factor = {drive.quality_factor:g} and "
@@ -200,11 +207,11 @@ def doubt_sine(drive: Drive, amplitude, virial, dissipation) -> AccuracyWarning 
 
 def _where(tap: tuple[float, float]) -> str:
     amplitude, approach = tap
-    height = readable(amplitude + approach, "m")
-    return f"amplitude {readable(amplitude, 'm')} and mean height {height}"
+    height = write_quantity(amplitude + approach, "m")
+    return f"amplitude {write_quantity(amplitude, 'm')} and mean height {height}"
 
 
-def _checked(found: Solutions) -> np.ndarray:
+def _solutions_to_check(found: Solutions) -> np.ndarray:
     """Return the indices of the solutions that are run again, to see whether they hold."""
     count = found.amplitude.size
     return np.unique(np.linspace(0, count - 1, min(count, _CHECKS)).astype(int))
@@ -219,7 +226,7 @@ def _warnings(taps, tap, drive, tolerance, found: Solutions) -> Iterator[Accurac
     if (doubtful := doubt_sine(drive, found.amplitude, *values)) is not None:
         yield doubtful
     wrong = []
-    for i in _checked(found):
+    for i in _solutions_to_check(found):
         amplitude, approach = found.amplitude[i], found.approach[i]
         excess = float(drive.excess(amplitude, *tap(amplitude, approach)[:2]))
         slope = taps.excess_slope(amplitude, approach)
@@ -230,7 +237,7 @@ def _warnings(taps, tap, drive, tolerance, found: Solutions) -> Iterator[Accurac
                 "height: taps between those that were run are not smooth"
             )
             wrong.append(((amplitude, approach), AccuracyWarning(text, off)))
-    yield from gather(wrong, _checked(found).size, "solutions that were checked", _where)
+    yield from gather(wrong, _solutions_to_check(found).size, "solutions that were checked", _where)
     labels = list(zip(found.row, found.branch, strict=True))
     for branch in ("attractive", "repulsive"):
         if any(labels.count((row, branch)) > 1 for row in set(found.row)):
@@ -281,3 +288,61 @@ def _ratios(values) -> np.ndarray:
         if not 0 < finite(f"amplitude_ratio[{i}]", value, "") < 1:
             raise ValueError(f"amplitude_ratio[{i}] = {value:g}: must be above 0 and below 1")
     return array
+
+
+def _scale(inputs: Inputs, result: "Dataset") -> Scales:
+    """Return the scales of taps of all amplitudes; heights count by the reach of the contact."""
+    contact, sweep = inputs.contact, inputs.motion
+    amplitudes = _ratios(sweep.amplitude_ratio) * sweep.free_amplitude
+    frequency = json.loads(result.attrs["experiment"])["motion"]["drive_frequency"]
+    scales = tap_scales(contact, amplitudes, frequency, result)
+    return replace(scales, fixed={**scales.fixed, "mean_height": contact.reach})
+
+
+def _foresee(inputs: Inputs) -> Foreseen:
+    """Return the tap that goes deepest, and what drives the lever and can be fed by that."""
+    contact, sweep = inputs.contact, inputs.motion
+    drive, frequency = drive_of(inputs.cantilever, sweep.free_amplitude, sweep.drive_frequency)
+    amplitudes = sweep.free_amplitude * np.array(sweep.amplitude_ratio)
+    words = f"driven at {drive.detuning:.4g} of the resonance, Q = {drive.quality_factor:.4g}"
+    most = write_quantity(drive.most_dissipation, "J")
+    rows = (
+        Row("lever stiffness", write_quantity(drive.stiffness, "N/m"), ""),
+        Row("free amplitude", write_quantity(drive.free_amplitude, "m"), words),
+        Row("force of the drive", write_quantity(drive.force, "N"), "amplitude, on the tip"),
+        Row("largest dissipation", most, "that the drive can feed, a cycle"),
+    )
+    deepest = deepest_tap(contact, drive, frequency, amplitudes)
+    return Foreseen(deepest, _TAPS, "tap", "of a tap: Hertz against the drive", rows)
+
+
+MODE = Mode(
+    name="approach-curve",
+    function=approach_curve,
+    motions={"sine": AmplitudeSweep},
+    observables={
+        **observables("mean_height", "phase", *OBSERVABLES, over=("branch", "amplitude_ratio")),
+        **{
+            name: each
+            for direction in DIRECTIONS
+            for name, each in observables(
+                *(f"{direction}_{name}" for name in ("amplitude", "phase", *OBSERVABLES)),
+                over=("sweep_height",),
+            ).items()
+        },
+    },
+    simulate=_simulate,
+    lever="resonator",
+    steady=True,
+    scales=_scale,
+    foresee=_foresee,
+    axes=Axes(
+        ("branch", "amplitude_ratio"),
+        lambda sweep: (BRANCHES, sweep.amplitude_ratio),
+        ("amplitude_ratio", "first_ratio", "last_ratio", "points"),
+    ),
+    diagnostics=("solver_taps",),
+    inputs={"free_amplitude": "m"},
+    gaps=True,
+    other_names="apd amplitudecurve dynamicspectroscopy",
+)

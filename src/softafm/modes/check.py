@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
+from softafm.checks.callers import warn_caller
 from softafm.checks.validate import one_of, tolerance_of
 from softafm.errors import AccuracyWarning, DivergedError
 from softafm.modes.start import solver_of
@@ -15,11 +16,12 @@ from softafm.progress import Progress, reporting
 from softafm.results.datasets import describe
 
 if TYPE_CHECKING:
-    from xarray import Dataset
+    from xarray import DataArray, Dataset
+
+    from softafm.modes.mode import Mode
+    from softafm.modes.scales import Scales
 
 _FINEST, _LEAST = 1e-5, 2e-5
-_TAP = 0.02
-"""Part of force times amplitude below which the energy of a tap counts as none."""
 _DOUBLED = ("steps", "nodes", "functions")
 
 
@@ -30,25 +32,6 @@ class Finer:
     solver: Any
     tolerance: float
     in_words: str
-
-
-@dataclass(frozen=True)
-class Scales:
-    """Magnitudes below which differences of observables count as if these were their values.
-
-    ``length``, m, times the largest force is an energy; ``reach``, m, and ``time``, s, are those of
-    a contact that is just felt. Numbers, or arrays over (branch, amplitude_ratio).
-    """
-
-    length: Any
-    reach: float
-    time: Any = 0.0
-
-    @classmethod
-    def of_taps(cls, contact, amplitude, frequency: float) -> "Scales":
-        """Scales of taps of an amplitude, m, shape (), or (n,)."""
-        grazing = np.sqrt(2 * contact.reach / amplitude) / (np.pi * frequency)
-        return cls(_TAP * amplitude, contact.reach, grazing)
 
 
 class Difference(NamedTuple):
@@ -92,71 +75,82 @@ def finer_run(check: bool, solver, tolerance: float) -> Finer | None:
     return Finer(finer, tolerance, ", ".join(f"{name} = {n}" for name, n in doubled.items()))
 
 
-def checked(
+def compare_with_finer(
+    mode: "Mode",
     result: "Dataset",
-    finer: Finer | None,
+    finer: Finer,
     tolerance: float,
-    scales: Scales,
+    scales: Callable[["Dataset"], "Scales"],
     repeat: Callable[..., "Dataset"],
     progress: bool | Progress | None,
-) -> "Dataset":
-    """Return a mode's result with what a finer run makes of it; as it is if ``finer`` is None.
+) -> None:
+    """Write into a result what a finer run makes of it, and warn of what exceeds the tolerance.
 
-    Written into its attributes: ``check_differences``, JSON, the largest difference of every
-    observable from the finer run over its scale; ``check_largest`` of them, a magnitude;
-    ``check_tolerance`` or ``check_solver``, that of the finer run; of an approach curve
-    ``check_mean_height``, that of the heights in m. ``repeat`` calls the mode with
-    ``solver``, ``tolerance`` and ``progress``. To be called by the mode itself, as a difference
-    above the tolerance is warned of on its behalf.
+    Its attributes become ``check_differences``, JSON, the largest difference of every observable
+    from the finer run over its scale; ``check_largest`` of them, a magnitude; ``check_tolerance``
+    or ``check_solver``, that of the finer run; where heights are observed ``check_mean_height``,
+    their largest difference in m.
+
+    Parameters
+    ----------
+    mode, result, tolerance
+        What was run, what it gave, and the tolerance it was run at.
+    finer, repeat
+        How to run it again, and the function that does, with ``solver``, ``tolerance`` and
+        ``progress``.
+    scales
+        Function of the finer result that returns the ``Scales``.
+    progress
+        As for the mode.
     """
-    if finer is None:
-        return result
     if finer.solver.adaptive:
         result.attrs["check_tolerance"] = finer.tolerance
     else:
         result.attrs["check_solver"] = json.dumps(describe(finer.solver))
     found: dict[str, Difference] = {}
-    problem = None
     try:
-        other = _repeated(finer, repeat, progress)
+        other = _run_again(finer, repeat, progress)
     except DivergedError as error:
-        problem = (
+        problem: str | None = (
             f"the check, with {finer.in_words}, could not be finished: {error}; the error of this "
             "run is not known"
         )
     else:
-        found = _differences(result, other, scales)
-        problem = _amiss(found, tolerance, finer) or _doubt(other, finer)
-    relative = {name: difference.relative for name, difference in found.items()}
-    result.attrs["check_differences"] = json.dumps(relative)
-    if "mean_height" in found:
-        result.attrs["check_mean_height"] = scales.reach * abs(found["mean_height"].relative)
-    result.attrs["check_largest"] = max(map(abs, relative.values()), default=np.nan)
+        judged = scales(other)
+        found = _differences(mode, result, other, judged)
+        problem = _say_largest(found, tolerance, finer) or _repeat_doubt(other, finer)
+        if "mean_height" in found:
+            height = judged.fixed["mean_height"] * abs(found["mean_height"].relative)
+            result.attrs["check_mean_height"] = height
+    result.attrs["check_differences"] = json.dumps({name: d.relative for name, d in found.items()})
+    largest = max((abs(difference.relative) for difference in found.values()), default=np.nan)
+    result.attrs["check_largest"] = largest
     if problem is not None:
-        told = result.attrs["warnings"]
-        result.attrs["warnings"] = f"{told}\n{problem}" if told else problem
-        warnings.warn(problem, AccuracyWarning, stacklevel=3)  # the caller of the mode
-    return result
+        before = result.attrs["warnings"]
+        result.attrs["warnings"] = f"{before}\n{problem}" if before else problem
+        warn_caller(AccuracyWarning(problem))
 
 
-def _repeated(finer: Finer, repeat, progress) -> "Dataset":
+def _run_again(finer: Finer, repeat, progress) -> "Dataset":
     """Run again, without the warnings of that run."""
     with warnings.catch_warnings(), reporting(progress) as report:
         warnings.simplefilter("ignore", AccuracyWarning)
 
-        def told(fraction: float, message: str) -> None:
+        def pass_on(fraction: float, message: str) -> None:
             if report is not None:
                 report(fraction, f"check: {message}")
 
         return repeat(
             solver=finer.solver,
             tolerance=finer.tolerance,
-            progress=None if report is None else told,
+            progress=None if report is None else pass_on,
         )
 
 
-def _amiss(found: dict[str, Difference], tolerance: float, finer: Finer) -> str | None:
-    """Tell of the largest difference, if it is above the tolerance."""
+def _say_largest(found: dict[str, Difference], tolerance: float, finer: Finer) -> str | None:
+    """Return a sentence on the largest difference, if it is above the tolerance."""
+    if not found:
+        return None
     name, worst = max(found.items(), key=lambda item: abs(item[1].relative))
     if abs(worst.relative) <= tolerance:
         return None
@@ -169,42 +163,36 @@ def _amiss(found: dict[str, Difference], tolerance: float, finer: Finer) -> str 
     )
 
 
-def _doubt(other: "Dataset", finer: Finer) -> str | None:
-    """Tell if the finer run itself was not sure."""
-    told = other.attrs["warnings"].splitlines()
-    return f"the check, with {finer.in_words}, warns: {told[0]}" if told else None
+def _repeat_doubt(other: "Dataset", finer: Finer) -> str | None:
+    """Return the first warning of the finer run, if it was not sure itself."""
+    doubts = other.attrs["warnings"].splitlines()
+    return f"the check, with {finer.in_words}, warns: {doubts[0]}" if doubts else None
 
 
-def _differences(result: "Dataset", other: "Dataset", scales: Scales) -> dict[str, Difference]:
-    """Compare all observables that are like ``force_max``: scalars, or those of branches."""
-    dims = other["force_max"].dims
-    force = np.maximum(np.abs(other["force_max"].values), np.abs(other["force_min"].values))
-    least = {"N": force, "J": force * scales.length, "s": scales.time, "m": scales.reach}
+def _differences(
+    mode: "Mode", result: "Dataset", other: "Dataset", scales: "Scales"
+) -> dict[str, Difference]:
+    """Compare all observables that have a unit, and how many solutions there are."""
     found = {}
-    for name, variable in other.data_vars.items():
-        units = variable.attrs["units"]
-        if variable.dims != dims or units == "1":
+    for name in mode.observed:
+        units = other[name].attrs["units"]
+        if units == "1":
             continue
-        value, finer = result[name].values, variable.values
-        if units == "degree":
-            scale = np.degrees(1.0)
-        elif name == "mean_height":
-            scale = scales.reach
-        else:
-            scale = np.maximum(np.abs(finer), least[units])
+        value, finer = result[name].values, other[name].values
+        scale = scales.of(name, units, finer)
         relative = np.where(value == finer, 0.0, (value - finer) / np.where(scale > 0, scale, 1.0))
         if np.isfinite(relative).any():
             worst = np.unravel_index(np.nanargmax(np.abs(relative)), relative.shape)
-            found[str(name)] = Difference(
+            found[name] = Difference(
                 float(relative[worst]), float(value[worst]), float(finer[worst]), units
             )
-    if dims:
-        found["solutions"] = _solutions(result, other)
+    if mode.gaps:
+        found["solutions"] = _solutions(result[mode.observed[0]], other[mode.observed[0]])
     return found
 
 
-def _solutions(result: "Dataset", other: "Dataset") -> Difference:
-    """Compare how many solutions an approach curve has, and on which branches."""
-    one, two = (np.isfinite(each["mean_height"].values) for each in (result, other))
-    share = int(np.sum(one != two)) / max(1, int(np.sum(two)))
-    return Difference(share, float(one.sum()), float(two.sum()), "in all")
+def _solutions(one: "DataArray", two: "DataArray") -> Difference:
+    """Compare how many solutions there are, and where."""
+    here, there = np.isfinite(one.values), np.isfinite(two.values)
+    share = int(np.sum(here != there)) / max(1, int(np.sum(there)))
+    return Difference(share, float(here.sum()), float(there.sum()), "in all")

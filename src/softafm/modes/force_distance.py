@@ -1,16 +1,16 @@
 """Force-distance curves: the tip height is prescribed."""
 
-from functools import partial
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from softafm.contact import Contact
 from softafm.instrument.motions import Sine, Trajectory, Triangle
-from softafm.modes.check import Scales, checked, finer_run
-from softafm.modes.start import carry, regularised
+from softafm.modes.mode import Layout, Mode
+from softafm.modes.perform import perform
 from softafm.progress import Progress
-from softafm.results.datasets import dataset, record_regularisation
+from softafm.results.content import RAMPED, observables
+from softafm.solvers.history import History
 
 if TYPE_CHECKING:
     from xarray import Dataset
@@ -68,24 +68,39 @@ def force_distance(
     DivergedError
         If the solver cannot continue.
     """
-    finer = finer_run(check, solver, tolerance)
-    given, contact = contact, regularised(contact, regularise)
-    solver, tolerance, history = carry(contact, motion, solver, tolerance, profiles, progress)
-    observables = ramp_observables(history, history.tip_height)
-    result = dataset("force-distance", contact, motion, solver, tolerance, history, observables)
-    record_regularisation(result, given, contact, regularise)
-    repeat, scales = partial(force_distance, contact, motion), Scales(contact.reach, contact.reach)
-    return checked(result, finer, tolerance, scales, repeat, progress)
+    return perform(
+        MODE, contact, motion, solver=solver, tolerance=tolerance, profiles=profiles,
+        progress=progress, check=check, regularise=regularise,
+    )  # fmt: skip
 
 
-def ramp_observables(history, path) -> dict[str, tuple]:
+def observe_ramp(contact: Contact, motion: Any, history: History) -> dict[str, Any]:
+    """Return the scalars of a force curve."""
+    return measure_ramp(history, history.tip_height)
+
+
+def measure_ramp(history: History, path: np.ndarray) -> dict[str, Any]:
     """Return the scalars of a force curve; ``path`` (n,), m, is the motion as carried out."""
     force = history.force
     lowest = history.time[np.argmin(path)]
     return {
-        "force_max": ((), history.extreme(force, 1)),
-        "force_min": ((), history.extreme(force, -1)),
-        "force_min_approach": ((), history.extreme(force, -1, stop=lowest)),
-        "loop_energy": ((), -history.integrate(force, history.motion.velocity)),
-        "viscous_loss": ((), history.integrate(history.viscous_power, np.ones_like)),
+        "force_max": history.extreme(force, 1),
+        "force_min": history.extreme(force, -1),
+        "force_min_approach": history.extreme(force, -1, stop=lowest),
+        "loop_energy": -history.integrate(force, history.motion.velocity),
+        "viscous_loss": history.integrate(history.viscous_power, np.ones_like),
     }
+
+
+MOTIONS = {"triangle": Triangle, "sine": Sine, "trajectory": Trajectory}
+"""Motions of the tip, or of the base of its lever, by shape."""
+
+MODE = Mode(
+    name="force-distance",
+    function=force_distance,
+    motions=MOTIONS,
+    observables=observables(*RAMPED),
+    observe=observe_ramp,
+    figure=Layout((("tip_height", "force"),), cropped=False),
+    other_names="forcecurve fd indentation",
+)

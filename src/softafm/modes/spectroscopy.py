@@ -1,16 +1,16 @@
 """Force spectroscopy: the base of a cantilever is moved, and the lever bends."""
 
-from functools import partial
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from softafm.contact import Contact
 from softafm.instrument.cantilever import Cantilever
 from softafm.instrument.motions import Sine, Trajectory, Triangle
-from softafm.modes.check import Scales, checked, finer_run
-from softafm.modes.force_distance import ramp_observables
-from softafm.modes.start import carry, refuse_other_than_cantilever, regularised
+from softafm.modes.force_distance import MOTIONS, measure_ramp
+from softafm.modes.mode import Layout, Mode
+from softafm.modes.perform import perform
 from softafm.progress import Progress
-from softafm.results.datasets import dataset, record_regularisation
+from softafm.results.content import RAMPED, observables
+from softafm.solvers.history import History
 
 if TYPE_CHECKING:
     from xarray import Dataset
@@ -59,22 +59,29 @@ def force_spectroscopy(
     DivergedError
         If the solver cannot continue.
     """
-    refuse_other_than_cantilever(cantilever)
-    finer = finer_run(check, solver, tolerance)
-    given, contact = contact, regularised(contact, regularise)
-    solver, tolerance, history = carry(
-        contact, motion, solver, tolerance, profiles, progress, stiffness=cantilever.stiffness
-    )
+    return perform(
+        MODE, contact, motion, cantilever, solver=solver, tolerance=tolerance, profiles=profiles,
+        progress=progress, check=check, regularise=regularise,
+    )  # fmt: skip
+
+
+def observe_lever(contact: Contact, motion: Any, history: History) -> dict[str, Any]:
+    """Return base height and deflection over time, and the scalars of a force curve."""
     base = history.motion.height(history.time)
-    observables = {
-        "base_height": ("time", base),
-        "deflection": ("time", history.tip_height - base),
-        **ramp_observables(history, base),
+    return {
+        "base_height": base,
+        "deflection": history.tip_height - base,
+        **measure_ramp(history, base),
     }
-    result = dataset(
-        "force-spectroscopy", contact, motion, solver, tolerance, history, observables, cantilever
-    )
-    record_regularisation(result, given, contact, regularise)
-    repeat = partial(force_spectroscopy, contact, cantilever, motion)
-    scales = Scales(contact.reach, contact.reach)
-    return checked(result, finer, tolerance, scales, repeat, progress)
+
+
+MODE = Mode(
+    name="force-spectroscopy",
+    function=force_spectroscopy,
+    motions=MOTIONS,
+    observables=observables("base_height", "deflection", over=("time",)) | observables(*RAMPED),
+    observe=observe_lever,
+    lever="stiffness",
+    figure=Layout((("time", "deflection"), ("base_height", "force"), ("tip_height", "force"))),
+    other_names="forcecurve fz",
+)

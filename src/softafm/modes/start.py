@@ -1,15 +1,17 @@
 """What all modes begin with: checks, and a run of the solver."""
 
-import warnings
 from dataclasses import replace
 
-from softafm.checks.kinds import MOTION, SOLVER, refuse_incomplete, refuse_other
+from softafm.checks.callers import warn_caller
+from softafm.checks.kinds import refuse_other
 from softafm.checks.validate import tabor_of, tolerance_of
 from softafm.contact import Contact
 from softafm.errors import AccuracyWarning
 from softafm.instrument.cantilever import Cantilever
+from softafm.instrument.motion import check_motion, find_setpoint, is_steady, list_doubts
 from softafm.progress import reporting
 from softafm.solvers.energy import Energy
+from softafm.solvers.solver import check_history, check_solver
 
 
 def carry(contact, motion, solver, tolerance, profiles, progress, **options):
@@ -18,19 +20,20 @@ def carry(contact, motion, solver, tolerance, profiles, progress, **options):
     ``solver`` None stands for ``Energy()``. ``options`` go to the solver.
     """
     tolerance, solver = tolerance_of(tolerance), solver_of(solver)
-    refuse_incomplete("motion", motion, MOTION, "a motion such as softafm.Triangle")
+    check_motion(motion)
     refuse_start_inside(contact, motion)
-    if getattr(motion, "steady", False):
+    if is_steady(motion):
         refuse_flow(contact, "cycles = 'steady'", "give a number of cycles")
     refuse_unable(solver, motion)
-    doubted = [AccuracyWarning(text) for text in getattr(motion, "doubts", ())]
+    doubted = [AccuracyWarning(text) for text in list_doubts(motion)]
     doubts = (*doubt_window(contact, motion), *doubted)
     for warning in doubts:
-        warnings.warn(warning, stacklevel=3)  # the caller of the mode
+        warn_caller(warning)
     with reporting(progress) as report:
         history = solver.solve(
             contact, motion, tolerance=tolerance, profiles=profiles, progress=report, **options
         )
+    check_history(solver, history)
     return solver, tolerance, replace(history, warnings=(*doubts, *history.warnings))
 
 
@@ -38,11 +41,11 @@ def solver_of(solver):
     """Return the solver of a run, ``Energy()`` for None; ValueError if it is not one."""
     if solver is None:
         return Energy()
-    refuse_incomplete("solver", solver, SOLVER, "a solver such as softafm.solvers.Energy()")
+    check_solver(solver)
     return solver
 
 
-def regularised(contact: Contact, tabor: float | None) -> Contact:
+def regularise_contact(contact: Contact, tabor: float | None) -> Contact:
     """Return the contact that a mode's option ``regularise`` stands for.
 
     ValueError if it is none, or the number is out of range.
@@ -78,7 +81,7 @@ def refuse_start_inside(contact, motion) -> None:
 
     A steady oscillation may: there the start is forgotten.
     """
-    if getattr(motion, "steady", False):
+    if is_steady(motion):
         return
     start = float(motion.height(motion.breaks[0]))
     gap, name = contact.edge_gap, "gap at which the surfaces touch"
@@ -113,7 +116,7 @@ def refuse_unable(solver, motion) -> None:
     """Raise ValueError if a solver of fixed steps is to turn at a force."""
     if solver is None or solver.adaptive:
         return
-    force = getattr(motion, "setpoint_force", None)
+    force = find_setpoint(motion)
     if force is not None:
         raise ValueError(
             f"setpoint_force = {force:g} N: the solver '{solver.kind}' must know the motion "

@@ -11,9 +11,9 @@ from itertools import pairwise
 
 import numpy as np
 
-OBSERVABLES = (
-    "virial", "dissipation", "force_mean", "force_max", "force_min", "contact_time", "indentation",
-)  # fmt: skip
+from softafm.results.content import TAPPED
+
+OBSERVABLES = TAPPED
 _LINES = 5
 _MOST_SAMPLES = 80
 _FARTHEST, _DEEPEST = 500.0, 3000.0

@@ -1,17 +1,18 @@
 """Tapping: the tip oscillates with given amplitude about a given mean height."""
 
-from functools import partial
 from itertools import pairwise
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
 from softafm.contact import Contact
 from softafm.instrument.motions import Sine
-from softafm.modes.check import Scales, checked, finer_run
-from softafm.modes.start import carry, regularised
+from softafm.modes.mode import Layout, Mode
+from softafm.modes.perform import perform
+from softafm.modes.scales import tap_scales
 from softafm.progress import Progress
-from softafm.results.datasets import dataset, record_regularisation
+from softafm.results.content import observables
+from softafm.solvers.history import History
 
 if TYPE_CHECKING:
     from xarray import Dataset
@@ -63,20 +64,15 @@ def tapping_cycle(
     DivergedError
         If the solver cannot continue.
     """
-    finer = finer_run(check, solver, tolerance)
-    given, contact = contact, regularised(contact, regularise)
-    motion = Sine(mean_height, amplitude, frequency, cycles)
-    solver, tolerance, history = carry(contact, motion, solver, tolerance, profiles, progress)
-    observables = tap_observables(contact, motion, history)
-    result = dataset("tapping-cycle", contact, motion, solver, tolerance, history, observables)
-    record_regularisation(result, given, contact, regularise)
-    repeat = partial(tapping_cycle, contact, amplitude, mean_height, frequency, cycles)
-    scales = Scales.of_taps(contact, motion.amplitude, motion.frequency)
-    return checked(result, finer, tolerance, scales, repeat, progress)
+    return perform(
+        MODE, contact, Sine(mean_height, amplitude, frequency, cycles), solver=solver,
+        tolerance=tolerance, profiles=profiles, progress=progress, check=check,
+        regularise=regularise,
+    )  # fmt: skip
 
 
-def tap_observables(contact, motion, history) -> dict[str, tuple]:
-    """Return the scalars of ``tapping_cycle``, each with its dimensions."""
+def observe_taps(contact: Contact, motion: Sine, history: History) -> dict[str, Any]:
+    """Return the scalars of the last cycle, and virial and dissipation of each."""
     period = 1 / motion.frequency
     tops = period * np.arange(motion.periods + 1)
 
@@ -90,21 +86,18 @@ def tap_observables(contact, motion, history) -> dict[str, tuple]:
     force = history.force
     axis_gap = history.tip_height - history.axis_deformation
     return {
-        "virial": ((), virial[-1]),
-        "dissipation": ((), dissipation[-1]),
-        "cycles_run": ((), history.diagnostics.get("cycles", motion.periods)),
-        "cycle_virial": ("cycle", virial),
-        "cycle_dissipation": ("cycle", dissipation),
-        "force_max": ((), history.extreme(force, 1, start)),
-        "force_min": ((), history.extreme(force, -1, start)),
-        "force_min_approach": ((), history.extreme(force, -1, start, start + period / 2)),
-        "force_mean": ((), history.integrate(force, np.ones_like, start, stop) / period),
-        "contact_time": (
-            (),
-            time_below(history.time[last], axis_gap[last], contact.edge_gap),
-        ),
-        "indentation": ((), max(0.0, -history.axis_deformation[last].min())),
-        "viscous_loss": ((), history.integrate(history.viscous_power, np.ones_like, start, stop)),
+        "virial": virial[-1],
+        "dissipation": dissipation[-1],
+        "cycles_run": history.diagnostics.get("cycles", motion.periods),
+        "cycle_virial": virial,
+        "cycle_dissipation": dissipation,
+        "force_max": history.extreme(force, 1, start),
+        "force_min": history.extreme(force, -1, start),
+        "force_min_approach": history.extreme(force, -1, start, start + period / 2),
+        "force_mean": history.integrate(force, np.ones_like, start, stop) / period,
+        "contact_time": time_below(history.time[last], axis_gap[last], contact.edge_gap),
+        "indentation": max(0.0, -history.axis_deformation[last].min()),
+        "viscous_loss": history.integrate(history.viscous_power, np.ones_like, start, stop),
     }
 
 
@@ -116,3 +109,27 @@ def time_below(time, values, level) -> float:
     part = np.where(crossing, (level - a) / np.where(crossing, b - a, 1.0), 0.0)
     share = np.where(below[:-1], np.where(below[1:], 1.0, part), np.where(below[1:], 1 - part, 0.0))
     return float(np.sum(np.diff(time) * share))
+
+
+MODE = Mode(
+    name="tapping-cycle",
+    function=tapping_cycle,
+    motions={"sine": Sine},
+    observables={
+        **observables("virial", "dissipation", "force_max", "force_min", "force_min_approach"),
+        **observables("force_mean", "contact_time", "indentation", "viscous_loss", "cycles_run"),
+        **observables("cycle_virial", "cycle_dissipation", over=("cycle",)),
+    },
+    observe=observe_taps,
+    scales=lambda given, result: tap_scales(
+        given.contact, given.motion.amplitude, given.motion.frequency, result
+    ),
+    figure=Layout(
+        title=(
+            ("virial", "virial"),
+            ("dissipation", "dissipation"),
+            ("force_max", "peak force"),
+        )
+    ),
+    other_names="tapping am amplitudemodulation",
+)

@@ -13,6 +13,7 @@ from softafm.checks.refusals import nearest, one_of, shown
 from softafm.results.content import (
     BRANCHES,
     FORMAT,
+    MAPS,
     NEEDED,
     PROFILES,
     REGULARISED,
@@ -39,7 +40,8 @@ def refuse_unusable(attributes: Mapping[str, Any], variables: Variables) -> None
         raise ValueError("not a result of softafm (its attribute 'format' says otherwise)")
     mode = attributes.get("mode")
     if not isinstance(mode, str) or mode not in NEEDED:
-        raise ValueError(f"attribute mode = {shown(mode)}: {nearest(mode, list(NEEDED))}")
+        modes_first = sorted(NEEDED, key=lambda known: known in MAPS)
+        raise ValueError(f"attribute mode = {shown(mode)}: {nearest(mode, modes_first)}")
     needed = NEEDED[mode]
     _refuse_experiment(mode, needed, attributes)
     _refuse_attributes(needed, attributes)
@@ -62,7 +64,7 @@ def refuse_unusable(attributes: Mapping[str, Any], variables: Variables) -> None
 
 
 def _refuse_experiment(mode: str, needed: Needed, attributes: Mapping[str, Any]) -> None:
-    experiment = _table("experiment", attributes)
+    experiment = _parse_table("experiment", attributes)
     if experiment.get("mode") != mode:
         raise ValueError(
             f"attribute experiment: is one of mode {shown(experiment.get('mode'))}, but the result "
@@ -71,12 +73,12 @@ def _refuse_experiment(mode: str, needed: Needed, attributes: Mapping[str, Any])
     for part in ("tip", "sample", "surface", needed.described):
         if not isinstance(experiment.get(part), dict):
             raise ValueError(f"attribute experiment: does not describe the {part}")
-    if mode == "approach-curve":
-        free = experiment["motion"].get("free_amplitude")
-        if not _is_number(free) or not 0 < free < _LARGEST_BY_DEFAULT:
+    for name, unit in needed.inputs.items():
+        value = experiment["motion"].get(name)
+        if not _is_number(value) or not 0 < value < _LARGEST_BY_DEFAULT:
             raise ValueError(
-                f"attribute experiment: motion.free_amplitude = {shown(free)}: must be a number in "
-                "m, greater than 0"
+                f"attribute experiment: motion.{name} = {shown(value)}: must be a number in "
+                f"{unit}, greater than 0"
             )
 
 
@@ -89,21 +91,23 @@ def _refuse_attributes(needed: Needed, attributes: Mapping[str, Any]) -> None:
     for name in _TEXTS:
         if not isinstance(attributes.get(name, ""), str):
             raise ValueError(f"attribute {name} = {shown(attributes[name])}: must be text")
-    differences = _table("check_differences", attributes, "{}")
+    differences = _parse_table("check_differences", attributes, "{}")
     if not all(map(_is_number, differences.values())):
         raise ValueError("attribute check_differences: must hold numbers by name")
-    if not isinstance(_parsed("failures", attributes, "[]"), list):
+    if not isinstance(_parse("failures", attributes, "[]"), list):
         raise ValueError("attribute failures: must be a list, as JSON")
 
 
-def _table(name: str, attributes: Mapping[str, Any], default: str | None = None) -> dict[str, Any]:
-    found = _parsed(name, attributes, default)
+def _parse_table(
+    name: str, attributes: Mapping[str, Any], default: str | None = None
+) -> dict[str, Any]:
+    found = _parse(name, attributes, default)
     if not isinstance(found, dict):
         raise ValueError(f"attribute {name}: must be a table, as JSON")
     return found
 
 
-def _parsed(name: str, attributes: Mapping[str, Any], default: str | None) -> Any:
+def _parse(name: str, attributes: Mapping[str, Any], default: str | None) -> Any:
     text = attributes.get(name, default)
     if text is None:
         raise ValueError(f"attribute {name}: missing")

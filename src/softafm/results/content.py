@@ -1,7 +1,7 @@
-"""What results hold: every variable with its unit, and which of them each mode has."""
+"""What results hold: every variable with its unit, and which of them those of each mode have."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -50,9 +50,10 @@ VARIABLES = {
     "lowest_height": ("m", "lowest height of the tip, or of the base of its lever"),
     "material": ("1", "number of the material"),
 }
-"""Unit and long name of every variable that a mode returns."""
+"""Unit and long name of every variable of a result, by name; a mode declares what is its own."""
 
-_DIRECTIONS = {"approach": "falls", "retract": "rises"}
+DIRECTIONS = {"approach": "falls", "retract": "rises"}
+"""Directions of a sweep of the height, and what it does then."""
 FORMAT = "softafm result 1"
 """What the attribute ``format`` of every result says."""
 LARGEST = 2_000_000_000
@@ -60,16 +61,19 @@ LARGEST = 2_000_000_000
 BRANCHES = ("attractive", "unstable", "repulsive")
 """The values of ``branch`` in an approach curve."""
 
-_TAPPED = (
+TAPPED = (
     "virial", "dissipation", "force_mean", "force_max", "force_min", "contact_time", "indentation",
 )  # fmt: skip
-_RAMPED = ("force_max", "force_min", "force_min_approach", "loop_energy", "viscous_loss")
+"""Observables of a tap."""
+RAMPED = ("force_max", "force_min", "force_min_approach", "loop_energy", "viscous_loss")
+"""Observables of a force curve."""
 _CURVES = ("tip_height", "force", "contact_radius", "axis_deformation", "viscous_power")
-_HISTORY: dict[str, tuple[str, ...]] = {
+HISTORY: dict[str, tuple[str, ...]] = {
     **dict.fromkeys(_CURVES, ("time",)),
     "jump_time": ("jump",),
     "jump_energy": ("jump",),
 }
+"""Dimensions of what is kept of a contact that is carried through a motion."""
 PROFILES: dict[str, tuple[str, ...]] = dict.fromkeys(
     ("deformation", "gap", "pressure"), ("time", "r")
 )
@@ -92,6 +96,15 @@ REGULARISED = ("regularised_range", "given_tabor", "given_range", "edge_slowed")
 
 
 @dataclass(frozen=True)
+class Observable:
+    """A variable that a mode adds to results: SI unit, what it is in words, and its dimensions."""
+
+    units: str
+    long_name: str
+    dims: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True)
 class Needed:
     """What the result of a mode holds, for figures, tables and exports to be made of it.
 
@@ -103,6 +116,8 @@ class Needed:
         What the attribute ``experiment`` describes besides tip, sample and surface.
     numbers
         Attributes that are numbers.
+    inputs
+        Keys of ``motion`` in the attribute ``experiment`` that are numbers above zero, with units.
     gaps
         Whether values may be NaN, where there is no solution.
     """
@@ -110,35 +125,14 @@ class Needed:
     variables: Mapping[str, tuple[str, ...]]
     described: str = "motion"
     numbers: tuple[str, ...] = ()
+    inputs: Mapping[str, str] = field(default_factory=dict)
     gaps: bool = False
 
 
-_RAMP = {**_HISTORY, **dict.fromkeys(_RAMPED, ())}
-NEEDED = {
-    "force-distance": Needed(_RAMP),
-    "force-spectroscopy": Needed({**_RAMP, "base_height": ("time",), "deflection": ("time",)}),
-    "tapping-cycle": Needed(
-        {
-            **_HISTORY,
-            **dict.fromkeys((*_TAPPED, "force_min_approach", "viscous_loss", "cycles_run"), ()),
-            **dict.fromkeys(("cycle_virial", "cycle_dissipation"), ("cycle",)),
-        }
-    ),
-    "approach-curve": Needed(
-        {
-            **dict.fromkeys(("mean_height", "phase", *_TAPPED), ("branch", "amplitude_ratio")),
-            **{
-                f"{direction}_{name}": ("sweep_height",)
-                for direction in _DIRECTIONS
-                for name in ("amplitude", "phase", *_TAPPED)
-            },
-        },
-        numbers=("solver_taps",),
-        gaps=True,
-    ),
+MAPS: dict[str, Needed] = {
     "amplitude-modulation": Needed(
         dict.fromkeys(
-            ("topography", "sample_height", "mean_height", "phase", "branch", *_TAPPED), ("y", "x")
+            ("topography", "sample_height", "mean_height", "phase", "branch", *TAPPED), ("y", "x")
         ),
         described="imaging",
         numbers=("different_pixels",),
@@ -146,14 +140,41 @@ NEEDED = {
     ),
     "force-volume": Needed(
         dict.fromkeys(
-            ("topography", "sample_height", "lowest_height", "indentation", *_RAMPED), ("y", "x")
+            ("topography", "sample_height", "lowest_height", "indentation", *RAMPED), ("y", "x")
         ),
         described="imaging",
         numbers=("different_pixels",),
         gaps=True,
     ),
 }
-"""By mode."""
+"""By kind of imaging."""
+NEEDED: dict[str, Needed] = {**MAPS}
+"""By kind of imaging, and by mode once it is declared."""
+
+
+def observables(*names: str, over: tuple[str, ...] = ()) -> dict[str, Observable]:
+    """Return observables that bear names known in results, over some dimensions."""
+    return {name: Observable(*_meaning(name), over) for name in names}
+
+
+def declare(mode: str, needed: Needed, observed: Mapping[str, Observable]) -> None:
+    """Make known what the results of a mode hold, and what its observables mean.
+
+    Raises
+    ------
+    ValueError
+        If the name of an observable means something else in results.
+    """
+    for name, each in observed.items():
+        unit = unit_of(name)
+        if unit is None:
+            VARIABLES[name] = each.units, each.long_name
+        elif (each.units, each.long_name) != _meaning(name):
+            raise ValueError(
+                f"observable '{name}' of mode '{mode}': this name means {_meaning(name)[1]}, in "
+                f"{unit}, in all results; take another name"
+            )
+    NEEDED[mode] = needed
 
 
 def variable(name: str, dims, values) -> "Variable":
@@ -163,7 +184,7 @@ def variable(name: str, dims, values) -> "Variable":
     """
     from xarray import Variable
 
-    units, long_name = VARIABLES[name] if name in VARIABLES else _swept(name)
+    units, long_name = _meaning(name)
     array = np.asarray(values)
     array = array if array.dtype.kind == "U" else array.astype(float)
     # On its usual path xarray imports dask to see whether this is one of its arrays.
@@ -175,11 +196,15 @@ def unit_of(name: str) -> str | None:
     if name in VARIABLES:
         return VARIABLES[name][0]
     direction, _, rest = name.partition("_")
-    return _swept(name)[0] if direction in _DIRECTIONS and rest in VARIABLES else None
+    return _swept(name)[0] if direction in DIRECTIONS and rest in VARIABLES else None
+
+
+def _meaning(name: str) -> tuple[str, str]:
+    return VARIABLES[name] if name in VARIABLES else _swept(name)
 
 
 def _swept(name: str) -> tuple[str, str]:
     """Return unit and long name of what is recorded in a sweep of the height."""
     direction, _, rest = name.partition("_")
     units, long_name = VARIABLES[rest]
-    return units, f"{long_name}, while the height {_DIRECTIONS[direction]}"
+    return units, f"{long_name}, while the height {DIRECTIONS[direction]}"

@@ -15,9 +15,9 @@ import numpy as np
 
 import softafm
 from softafm.checks.kinds import refuse_non_dataset
-from softafm.checks.paths import why_no_file
-from softafm.results.content import FORMAT, LARGEST, variable
-from softafm.results.netcdf import file_content
+from softafm.checks.paths import explain_no_file
+from softafm.results.content import FORMAT, HISTORY, LARGEST, PROFILES, variable
+from softafm.results.netcdf import make_file_content
 from softafm.solvers.history import History
 
 if TYPE_CHECKING:
@@ -51,18 +51,18 @@ def describe(thing) -> dict:
     Those of a class that is no dataclass are its ``description``; {} if it has none.
     """
     if is_dataclass(thing):
-        values = {f.name: _described(getattr(thing, f.name)) for f in fields(thing)}
+        values = {f.name: _describe_value(getattr(thing, f.name)) for f in fields(thing)}
     else:
         values = getattr(thing, "description", {})
     return {"kind": thing.kind, **values}
 
 
-def _described(value):
+def _describe_value(value):
     """Return a parameter as JSON can hold it: of a user's function name and text."""
     if is_dataclass(value):
         return describe(value)
     if isinstance(value, tuple):
-        return [_described(entry) for entry in value]
+        return [_describe_value(entry) for entry in value]
     if not callable(value):
         return value
     function = getattr(value, "py_func", value)
@@ -73,43 +73,31 @@ def _described(value):
     return {"name": f"{function.__module__}.{function.__qualname__}", "source": source}
 
 
-def dataset(
-    mode: str,
-    contact,
-    motion,
-    solver,
-    tolerance: float,
-    history: History,
-    observables: dict[str, tuple],
-    cantilever=None,
-) -> "Dataset":
-    """Assemble a result: the history, the mode's observables (dims, values) and the provenance."""
-    curves = ("tip_height", "force", "contact_radius", "axis_deformation", "viscous_power")
-    data = {name: variable(name, "time", getattr(history, name)) for name in curves}
-    for name in ("jump_time", "jump_energy"):
-        data[name] = variable(name, "jump", getattr(history, name))
-    for name, (dims, values) in observables.items():
-        data[name] = variable(name, dims, values)
-    coordinates = {"time": variable("time", "time", history.time)}
+def history_variables(contact, history: History) -> tuple[dict, dict]:
+    """Return the curves, jumps and shapes of a history, and their coordinates.
+
+    Both by name as (dims, values).
+    """
+    data = {name: (dims, getattr(history, name)) for name, dims in HISTORY.items()}
+    coordinates = {"time": ("time", history.time)}
     if history.profiles is not None:
         shapes = history.profiles
         gap = history.tip_height[:, None] + contact.tip.profile(shapes.radius) - shapes.deformation
-        coordinates["r"] = variable("r", "r", shapes.radius)
-        data["deformation"] = variable("deformation", ("time", "r"), shapes.deformation)
-        data["gap"] = variable("gap", ("time", "r"), gap)
-        data["pressure"] = variable("pressure", ("time", "r"), contact.surface.pressure(gap))
-    parts = {"motion": motion, **({} if cantilever is None else {"cantilever": cantilever})}
-    attributes = _provenance(
-        mode, contact, parts, solver, tolerance, history.warnings, history.diagnostics
-    )
-    return _assemble(data, coordinates, attributes)
+        coordinates["r"] = ("r", shapes.radius)
+        for name, values in (
+            ("deformation", shapes.deformation),
+            ("gap", gap),
+            ("pressure", contact.surface.pressure(gap)),
+        ):
+            data[name] = (PROFILES[name], values)
+    return data, coordinates
 
 
-def curve_dataset(
-    mode: str, contact, parts: dict, solver, tolerance: float, data, coordinates, warnings,
-    diagnostics,
+def dataset(
+    mode: str, contact, parts: Mapping[str, Any], solver, tolerance: float, data, coordinates,
+    warnings, diagnostics,
 ) -> "Dataset":  # fmt: skip
-    """Assemble a result that is not a history: variables and coordinates by name as (dims, values).
+    """Assemble a result of variables and coordinates, by name as (dims, values).
 
     ``parts`` are what took part besides the contact, by name: objects, or dictionaries.
     """
@@ -117,7 +105,7 @@ def curve_dataset(
     def known(arrays):
         return {name: variable(name, dims, values) for name, (dims, values) in arrays.items()}
 
-    attributes = _provenance(mode, contact, parts, solver, tolerance, warnings, diagnostics)
+    attributes = _collect_provenance(mode, contact, parts, solver, tolerance, warnings, diagnostics)
     return _assemble(known(data), known(coordinates), attributes)
 
 
@@ -136,11 +124,11 @@ def record_regularisation(result: "Dataset", given, contact, tabor: float | None
         "regularised_range": contact.surface.range,
         "given_range": given.surface.range,
         "given_tabor": given.tabor_softened,
-        "edge_slowed": edge_slowed(given, contact.surface.range),
+        "edge_slowed": compute_edge_slowing(given, contact.surface.range),
     }
 
 
-def edge_slowed(given, longer: float) -> float:
+def compute_edge_slowing(given, longer: float) -> float:
     """Return by what factor the edge of a contact is slower, in cohesive lengths, at a range, m.
 
     That of an elastic one is none the slower for it, 1: no rate matters there.
@@ -150,7 +138,7 @@ def edge_slowed(given, longer: float) -> float:
     return (longer / given.surface.range) ** 2 if rate_matters else 1.0
 
 
-def misfit_attributes(sample) -> dict[str, float]:
+def describe_misfit(sample) -> dict[str, float]:
     """Return how well a sample fits the measured moduli it was fitted to; {} for all others."""
     misfit = getattr(sample, "dma_misfit", None)
     if misfit is None:
@@ -158,7 +146,7 @@ def misfit_attributes(sample) -> dict[str, float]:
     return dict(zip(("dma_misfit_largest", "dma_misfit_rms"), misfit, strict=True))
 
 
-def _provenance(mode, contact, parts, solver, tolerance, warnings, diagnostics) -> dict:
+def _collect_provenance(mode, contact, parts, solver, tolerance, warnings, diagnostics) -> dict:
     """Return the attributes of a result: its whole input, and how it was computed."""
     things = {"tip": contact.tip, "sample": contact.sample, "surface": contact.surface, **parts}
     experiment = {
@@ -176,7 +164,7 @@ def _provenance(mode, contact, parts, solver, tolerance, warnings, diagnostics) 
         "tabor_instantaneous": contact.tabor_instantaneous,
         "tabor_relaxed": contact.tabor_relaxed,
         "cohesive_length": contact.cohesive_length,
-        **misfit_attributes(contact.rheology),
+        **describe_misfit(contact.rheology),
         "warnings": "\n".join(map(str, warnings)),
         **{f"solver_{name}": value for name, value in diagnostics.items()},
     }
@@ -198,7 +186,7 @@ def save(result: "Dataset", path, *, overwrite: bool = False) -> None:
     """
     refuse_non_dataset("result", result)
     # Formed in memory: on a full disk HDF5 itself may take the process down with it.
-    content = file_content(result)
+    content = make_file_content(result)
     write_whole(path, overwrite, lambda part: Path(part).write_bytes(content))
 
 
@@ -224,9 +212,9 @@ def load(path, *, largest: float = LARGEST) -> "Dataset":
     from softafm.results.files import read
 
     if not Path(path).is_file():
-        raise FileNotFoundError(f"{path}: {why_no_file(Path(path))}")
+        raise FileNotFoundError(f"{path}: {explain_no_file(Path(path))}")
     try:
-        return result_of(*read(str(path), int(largest)))
+        return build_result(*read(str(path), int(largest)))
     except ValueError as problem:
         raise ValueError(f"{path}: {problem}") from None
 
@@ -241,31 +229,31 @@ def load_apart(path, *, largest: float = LARGEST, seconds: float | None = None) 
     path, largest
         As for ``load``.
     seconds
-        Time after which the reading is ended, s; by default ``softafm.files.guard.seconds_for``.
+        Time after which the reading is ended, s; by default ``softafm.files.guard.allow_seconds``.
 
     Raises
     ------
     FileNotFoundError, ValueError
         As ``load``, and ValueError if the file cannot be read in that time.
     """
-    from softafm.files.guard import read_apart, seconds_for
+    from softafm.files.guard import allow_seconds, read_apart
 
     if not Path(path).is_file():
-        raise FileNotFoundError(f"{path}: {why_no_file(Path(path))}")
+        raise FileNotFoundError(f"{path}: {explain_no_file(Path(path))}")
     try:
         found = read_apart(
             "softafm.results.files:read",
             str(path),
             int(largest),
-            seconds=seconds_for(path) if seconds is None else seconds,
+            seconds=allow_seconds(path) if seconds is None else seconds,
             largest=int(largest),
         )
-        return result_of(*found)
+        return build_result(*found)
     except ValueError as problem:
         raise ValueError(f"{path}: {problem}") from None
 
 
-def result_of(content: "Content", arrays: Sequence[np.ndarray]) -> "Dataset":
+def build_result(content: "Content", arrays: Sequence[np.ndarray]) -> "Dataset":
     """Return the result that ``softafm.results.files.read`` found in a file.
 
     Raises
@@ -283,11 +271,13 @@ def result_of(content: "Content", arrays: Sequence[np.ndarray]) -> "Dataset":
         for (name, dimensions, attrs), values in zip(described, arrays, strict=True)
     }
     refuse_unusable(attributes, variables)
-    made = {name: (*parts, _as_saved(attrs)) for name, (*parts, attrs) in variables.items()}
-    return Dataset(made, attrs=_as_saved(attributes)).set_coords(coordinates)
+    made = {
+        name: (*parts, _convert_attributes(attrs)) for name, (*parts, attrs) in variables.items()
+    }
+    return Dataset(made, attrs=_convert_attributes(attributes)).set_coords(coordinates)
 
 
-def _as_saved(attributes: Mapping[str, Any]) -> dict:
+def _convert_attributes(attributes: Mapping[str, Any]) -> dict:
     """Return attributes as NumPy's numbers and arrays of numbers, as xarray reads them."""
     return {
         name: value if isinstance(value, str) or _holds_text(value) else np.array(value)[()]
@@ -319,15 +309,23 @@ def export(result: "Dataset", path, *, overwrite: bool = False) -> None:
     elif suffix == ".csv":
         if {"x", "y"} <= set(result.dims):
             raise ValueError(f"{path}: maps have no CSV; take .h5, or export_gwyddion")
-        if not {"time", "sweep_height"} & set(result.dims) or "experiment" not in result.attrs:
+        if not _curve_dimension(result) or "experiment" not in result.attrs:
             raise ValueError(f"{path}: the dataset is not a result of softafm, so it has no curve")
         write_whole(path, overwrite, lambda part: _write_csv(result, part))
     else:
         raise ValueError(f"{path}: suffix {suffix!r} is not known, must be .csv or .h5")
 
 
+def _curve_dimension(result: "Dataset") -> str:
+    """Return along which coordinate the curves of a result lie; "" if it has none."""
+    known = [str(name) for name in result.dims if name in result.coords]
+    curves = {variable.dims for variable in result.data_vars.values()}
+    first = [name for name in ("time", "sweep_height") if name in known]
+    return next((name for name in [*first, *known] if (name,) in curves), "")
+
+
 def _write_csv(result, path):
-    along = "time" if "time" in result.dims else "sweep_height"
+    along = _curve_dimension(result)
     numbers = [v for v in result.data_vars.values() if v.dtype.kind in "fiub"]
     curves = [result[along]] + [v for v in numbers if v.dims == (along,)]
     scalars = [v for v in numbers if v.dims == ()]

@@ -66,30 +66,30 @@ def read(path: str, largest: int = LARGEST) -> tuple[Content, list[np.ndarray]]:
 
 
 def _read(file: h5py.File, largest: int) -> tuple[Content, list[np.ndarray]]:
-    found = {name: _opened(file, name) for name in _names(file)}
+    found = {name: _open(file, name) for name in _list_names(file)}
     sizes = {name: dataset.shape[0] for name, dataset in found.items() if _is_dimension(dataset)}
     held = {name: dataset for name, dataset in found.items() if not _is_no_variable(dataset)}
     size = sum(dataset.size * dataset.id.get_type().get_size() for dataset in held.values())
     if size > largest:
         raise NotReadable(f"has {size / 1e6:.0f} MB unpacked: at most {largest / 1e6:g} MB")
-    attributes = _attributes("the file", file)
+    attributes = _read_attributes("the file", file)
     coordinates = str(attributes.pop("coordinates", "")).split()
     variables, flags = [], set()
     for name, dataset in held.items():
-        described = _attributes(f"variable '{name}'", dataset)
+        described = _read_attributes(f"variable '{name}'", dataset)
         if described.pop("dtype", None) == _FLAGS:
             flags.add(name)
         coordinates += str(described.pop("coordinates", "")).split()
-        variables.append((name, _dimensions(file, name, dataset, sizes), described))
+        variables.append((name, _find_dimensions(file, name, dataset, sizes), described))
     extra = [name for name in dict.fromkeys(coordinates) if name in held]
-    arrays = [_values(name, dataset, largest) for name, dataset in held.items()]
+    arrays = [_read_values(name, dataset, largest) for name, dataset in held.items()]
     arrays = [
         values != 0 if name in flags else values for name, values in zip(held, arrays, strict=True)
     ]
     return Content(attributes, variables, extra), arrays
 
 
-def _names(file: h5py.File) -> list[str]:
+def _list_names(file: h5py.File) -> list[str]:
     if len(file) > _MOST_VARIABLES:
         raise NotReadable(f"has {len(file)} entries: at most {_MOST_VARIABLES}")
     names = list(file)
@@ -101,7 +101,7 @@ def _names(file: h5py.File) -> list[str]:
     return names
 
 
-def _opened(file: h5py.File, name: str) -> h5py.Dataset:
+def _open(file: h5py.File, name: str) -> h5py.Dataset:
     """Return a data set of which nothing was read, and nothing lies outside the file."""
     opened = h5py.h5o.open(file.id, name.encode())
     if not isinstance(opened, h5py.h5d.DatasetID):
@@ -130,21 +130,21 @@ def _refuse_type(where: str, kind: h5py.h5t.TypeID, variable: bool = False) -> N
 
 
 def _is_dimension(dataset: h5py.Dataset) -> bool:
-    return _hidden_text(dataset, "CLASS") == "DIMENSION_SCALE" and len(dataset.shape) == 1
+    return _read_hidden_text(dataset, "CLASS") == "DIMENSION_SCALE" and len(dataset.shape) == 1
 
 
 def _is_no_variable(dataset: h5py.Dataset) -> bool:
     """Whether it only tells how long a dimension is."""
-    return _is_dimension(dataset) and _hidden_text(dataset, "NAME").startswith(_NO_VARIABLE)
+    return _is_dimension(dataset) and _read_hidden_text(dataset, "NAME").startswith(_NO_VARIABLE)
 
 
-def _hidden_text(dataset: h5py.Dataset, name: str) -> str:
+def _read_hidden_text(dataset: h5py.Dataset, name: str) -> str:
     if name not in dataset.attrs:
         return ""
-    return str(_attribute(f"attribute '{name}'", dataset, name))
+    return str(_read_attribute(f"attribute '{name}'", dataset, name))
 
 
-def _dimensions(
+def _find_dimensions(
     file: h5py.File, name: str, dataset: h5py.Dataset, sizes: dict[str, int]
 ) -> list[str]:
     """Return the names of a variable's dimensions, without opening what it refers to."""
@@ -162,22 +162,22 @@ def _dimensions(
     raise NotReadable(f"variable '{name}' has dimensions without a name, or of another length")
 
 
-def _attributes(where: str, thing: h5py.File | h5py.Dataset) -> dict[str, Any]:
+def _read_attributes(where: str, thing: h5py.File | h5py.Dataset) -> dict[str, Any]:
     return {
         name: value
-        for name, value in _shown_attributes(where, thing)
+        for name, value in _list_attributes(where, thing)
         if not (name == "_FillValue" and isinstance(value, float) and np.isnan(value))
     }
 
 
-def _shown_attributes(where: str, thing: h5py.File | h5py.Dataset) -> Iterator[tuple[str, Any]]:
+def _list_attributes(where: str, thing: h5py.File | h5py.Dataset) -> Iterator[tuple[str, Any]]:
     if len(thing.attrs) > _MOST_ATTRIBUTES:
         raise NotReadable(f"{where} has {len(thing.attrs)} attributes: at most {_MOST_ATTRIBUTES}")
     for name in thing.attrs:
         if name in _HIDDEN:
             continue
         attribute = f"attribute '{name[:60]}' of {where}"
-        value = _attribute(attribute, thing, name)
+        value = _read_attribute(attribute, thing, name)
         if name in _PACKING and not (name == "dtype" and value == _FLAGS):
             raise NotReadable(f"{attribute}: softafm does not write such values")
         if name == "_FillValue" and value == value:
@@ -185,7 +185,7 @@ def _shown_attributes(where: str, thing: h5py.File | h5py.Dataset) -> Iterator[t
         yield name, value
 
 
-def _attribute(where: str, thing: h5py.File | h5py.Dataset, name: str) -> Any:
+def _read_attribute(where: str, thing: h5py.File | h5py.Dataset, name: str) -> Any:
     """Return a number, a text or a list of them."""
     found = thing.attrs.get_id(name)
     kind, shape = found.get_type(), found.shape
@@ -200,7 +200,7 @@ def _attribute(where: str, thing: h5py.File | h5py.Dataset, name: str) -> Any:
     return values[0] if count == 1 else values
 
 
-def _values(name: str, dataset: h5py.Dataset, largest: int) -> np.ndarray:
+def _read_values(name: str, dataset: h5py.Dataset, largest: int) -> np.ndarray:
     if h5py.check_string_dtype(dataset.dtype) is None:
         return dataset[()]
     if dataset.size > _MOST_TEXTS:

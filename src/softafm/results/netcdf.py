@@ -12,7 +12,7 @@ if TYPE_CHECKING:
     from xarray import Dataset, Variable
 
 
-def file_content(result: "Dataset") -> bytes:
+def make_file_content(result: "Dataset") -> bytes:
     """Return the content of a NetCDF-4 file that holds a dataset."""
     if not _is_plain(result):
         return bytes(result.to_netcdf(engine="h5netcdf"))

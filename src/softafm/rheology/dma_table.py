@@ -8,7 +8,7 @@ from typing import NamedTuple
 import numpy as np
 
 from softafm.checks.validate import poisson_ratio
-from softafm.files.tables import Column, Table, shown
+from softafm.files.tables import Column, Table, quote
 from softafm.rheology.closest import refuse_impossible
 from softafm.rheology.dma import sort_moduli
 from softafm.units.quantities import (
@@ -144,7 +144,7 @@ def _tangent(table: Table) -> np.ndarray | None:
     if column is not None:
         if column.unit not in _WITHOUT_UNIT:
             raise ValueError(
-                f"column {shown(column.title)} must have no unit, not {shown(column.unit)}"
+                f"column {quote(column.title)} must have no unit, not {quote(column.unit)}"
             )
         tangent = table.numbers(column)
         _refuse(table, column.name, tangent, "", tangent > 0, "above 0")
@@ -177,7 +177,7 @@ def _frequency(table: Table) -> np.ndarray:
         return table.in_si(column, ANGULAR_FREQUENCY) / (2 * pi)
     if _measures(column.unit, FREQUENCY) and "hz" not in column.unit.casefold():
         raise ValueError(
-            f"column {shown(column.title)} may be in Hz or in rad/s: write which of them"
+            f"column {quote(column.title)} may be in Hz or in rad/s: write which of them"
         )
     return table.in_si(column, FREQUENCY)
 

@@ -9,7 +9,7 @@ import numpy as np
 from softafm.checks.validate import positive
 from softafm.compiled.formulas import Term
 from softafm.surfaces.law import SurfaceLaw
-from softafm.surfaces.limits import length
+from softafm.surfaces.limits import check_length
 
 
 @dataclass(frozen=True)
@@ -43,7 +43,7 @@ class VanDerWaalsAttraction(SurfaceLaw):
 
     def __post_init__(self):
         object.__setattr__(self, "hamaker", positive("hamaker", self.hamaker, "J"))
-        object.__setattr__(self, "cutoff", length("cutoff", self.cutoff))
+        object.__setattr__(self, "cutoff", check_length("cutoff", self.cutoff))
 
     @property
     def terms(self) -> tuple[Term]:

@@ -6,7 +6,7 @@ from typing import ClassVar
 
 import numpy as np
 
-from softafm.compiled.formulas import Term, bound_parameters, first_line
+from softafm.compiled.formulas import Term, bound_parameters, find_first_line
 from softafm.surfaces.law import SurfaceLaw
 
 _GAPS = np.geomspace(1e-12, 1e-6, 301)
@@ -75,7 +75,7 @@ class CustomSurface(SurfaceLaw):
         except Exception as error:  # numba raises many types
             raise ValueError(
                 f"{wrong}must be one that numba compiles and that returns (pressure, slope, "
-                f"potential) at any gap: {first_line(error)}"
+                f"potential) at any gap: {find_first_line(error)}"
             ) from error
         tension = max(float(np.max(-p, initial=0.0, where=np.isfinite(p))), 1e6)
         checked = ~(p > _STRONGEST * tension)
@@ -87,7 +87,7 @@ class CustomSurface(SurfaceLaw):
             ("slope", slope, self.pressure, 1),
             ("pressure", p, self.potential, -1),
         ):
-            found = sign * _derivative(of, h)
+            found = sign * _differentiate(of, h)
             values = np.abs(of(h))
             scale = np.abs(claimed) + (values + _NOISE * values.max(initial=0.0)) / h
             off = np.abs(claimed - found) > _TOLERANCE * scale
@@ -103,7 +103,7 @@ class CustomSurface(SurfaceLaw):
             )
 
 
-def _derivative(function, h):
+def _differentiate(function, h):
     step = _STEP * h
     near = function(h + step) - function(h - step)
     return (8 * near - (function(h + 2 * step) - function(h - 2 * step))) / (12 * step)

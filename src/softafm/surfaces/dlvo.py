@@ -8,7 +8,7 @@ from softafm.checks.validate import between, positive
 from softafm.compiled.formulas import Term
 from softafm.surfaces.law import SurfaceLaw
 from softafm.surfaces.lennard_jones import _lennard_jones
-from softafm.surfaces.limits import length
+from softafm.surfaces.limits import check_length
 from softafm.surfaces.repulsion import exponential
 
 _CHARGE, _BOLTZMANN, _AVOGADRO = 1.602176634e-19, 1.380649e-23, 6.02214076e23
@@ -65,11 +65,11 @@ class DLVO(SurfaceLaw):
     def __post_init__(self):
         psi = between("surface_potential", self.surface_potential, "V", -1, 1)
         object.__setattr__(self, "hamaker", positive("hamaker", self.hamaker, "J"))
-        object.__setattr__(self, "z0", length("z0", self.z0))
+        object.__setattr__(self, "z0", check_length("z0", self.z0))
         object.__setattr__(self, "surface_potential", psi)
-        object.__setattr__(self, "debye_length", length("debye_length", self.debye_length))
-        object.__setattr__(self, "temperature", _temperature(self.temperature))
-        object.__setattr__(self, "permittivity", _permittivity(self.permittivity))
+        object.__setattr__(self, "debye_length", check_length("debye_length", self.debye_length))
+        object.__setattr__(self, "temperature", _check_temperature(self.temperature))
+        object.__setattr__(self, "permittivity", _check_permittivity(self.permittivity))
         if self.tip_potential is not None:
             other = between("tip_potential", self.tip_potential, "V", -1, 1)
             object.__setattr__(self, "tip_potential", other)
@@ -93,8 +93,8 @@ class DLVO(SurfaceLaw):
             Concentration of the 1:1 salt, mol/L, 1e-7 (pure water) to 10.
         """
         n = 1e3 * _AVOGADRO * between("concentration", concentration, "mol/L", 1e-7, 10)
-        epsilon = _VACUUM * _permittivity(permittivity)
-        squared = epsilon * _BOLTZMANN * _temperature(temperature) / (2 * n * _CHARGE**2)
+        epsilon = _VACUUM * _check_permittivity(permittivity)
+        squared = epsilon * _BOLTZMANN * _check_temperature(temperature) / (2 * n * _CHARGE**2)
         return cls(
             hamaker, z0, surface_potential, sqrt(squared), temperature, permittivity, tip_potential
         )
@@ -114,9 +114,9 @@ class DLVO(SurfaceLaw):
         return (Term(_lennard_jones, (self.hamaker, self.z0)), Term(exponential, layers))
 
 
-def _temperature(value: float) -> float:
+def _check_temperature(value: float) -> float:
     return between("temperature", value, "K", 200, 1000)
 
 
-def _permittivity(value: float) -> float:
+def _check_permittivity(value: float) -> float:
     return between("permittivity", value, "", 1, 1000)

@@ -8,7 +8,7 @@ from softafm.checks.validate import between, positive
 from softafm.compiled.formulas import Term
 from softafm.surfaces.attraction import attraction
 from softafm.surfaces.law import SurfaceLaw
-from softafm.surfaces.limits import length
+from softafm.surfaces.limits import check_length
 from softafm.surfaces.repulsion import exponential
 
 _WALLS = 0.02, 0.25
@@ -49,7 +49,7 @@ class DMT(SurfaceLaw):
 
     def __post_init__(self):
         object.__setattr__(self, "hamaker", positive("hamaker", self.hamaker, "J"))
-        object.__setattr__(self, "z0", length("z0", self.z0))
+        object.__setattr__(self, "z0", check_length("z0", self.z0))
         object.__setattr__(self, "wall", between("wall", self.wall, "", *_WALLS))
 
     @classmethod
@@ -61,7 +61,7 @@ class DMT(SurfaceLaw):
         W
             Work per area to part the surfaces, J/m².
         """
-        W, z0 = positive("W", W, "J/m²"), length("z0", z0)
+        W, z0 = positive("W", W, "J/m²"), check_length("z0", z0)
         share = 1 - 2 * between("wall", wall, "", *_WALLS)
         return cls(12 * pi * z0**2 * W / share, z0, wall)
 

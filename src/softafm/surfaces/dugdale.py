@@ -10,7 +10,7 @@ import numpy as np
 from softafm.checks.validate import between, positive
 from softafm.compiled.formulas import Term
 from softafm.surfaces.law import SurfaceLaw
-from softafm.surfaces.limits import length
+from softafm.surfaces.limits import check_length
 
 
 @dataclass(frozen=True)
@@ -56,11 +56,11 @@ class Dugdale(SurfaceLaw):
     def __post_init__(self):
         W = positive("work_of_adhesion", self.work_of_adhesion, "J/m²")
         object.__setattr__(self, "work_of_adhesion", W)
-        object.__setattr__(self, "z0", length("z0", self.z0))
+        object.__setattr__(self, "z0", check_length("z0", self.z0))
         object.__setattr__(self, "tension", positive("tension", self.tension, "Pa"))
         object.__setattr__(self, "smoothing", between("smoothing", self.smoothing, "", 0.02, 0.3))
         try:
-            length("work_of_adhesion/tension", W / self.tension)
+            check_length("work_of_adhesion/tension", W / self.tension)
         except ValueError as error:
             raise ValueError(f"tension = {self.tension:g} Pa: {error}") from None
 

@@ -7,7 +7,7 @@ from typing import ClassVar
 from softafm.checks.validate import positive
 from softafm.compiled.formulas import Term
 from softafm.surfaces.law import SurfaceLaw
-from softafm.surfaces.limits import length
+from softafm.surfaces.limits import check_length
 from softafm.surfaces.repulsion import exponential
 
 
@@ -42,9 +42,9 @@ class Exponential(SurfaceLaw):
     def __post_init__(self):
         W = positive("work_of_adhesion", self.work_of_adhesion, "J/m²")
         object.__setattr__(self, "work_of_adhesion", W)
-        object.__setattr__(self, "z0", length("z0", self.z0))
-        object.__setattr__(self, "decay", length("decay", self.decay))
-        object.__setattr__(self, "core", length("core", self.core))
+        object.__setattr__(self, "z0", check_length("z0", self.z0))
+        object.__setattr__(self, "decay", check_length("decay", self.decay))
+        object.__setattr__(self, "core", check_length("core", self.core))
         if not self.core <= 0.99 * self.decay:
             raise ValueError(
                 f"core = {self.core:g} m: must be shorter than decay = {self.decay:g} m, at most "

@@ -137,9 +137,9 @@ class SurfaceLaw(ABC):
     @property
     def compiled_pressure(self):
         """p and Φ compiled for solvers, and their parameters (see ``softafm.compiled``)."""
-        from softafm.compiled.functions import pressure_functions
+        from softafm.compiled.functions import compile_pressure
 
-        pressure, potential = pressure_functions(tuple(term.shape for term in self.terms))
+        pressure, potential = compile_pressure(tuple(term.shape for term in self.terms))
         values = [value for term in self.terms for value in term.packed]
         return pressure, potential, np.array([0.0, *values])
 
@@ -168,16 +168,16 @@ class SurfaceLaw(ABC):
                 f"surface law '{self.kind}': attracts ever more up to a gap of {_GAPS[-1]:g} m; "
                 "its attraction must fade"
             )
-        return _root(self.slope, _GAPS[strongest - 1], _GAPS[strongest + 1])
+        return _find_root(self.slope, _GAPS[strongest - 1], _GAPS[strongest + 1])
 
     @cached_property
     def _equilibrium(self) -> float:
         gap = self._tension_gap
         inside = int(np.flatnonzero((gap > _GAPS) & (self._scanned >= 0))[-1])
-        return _root(self.pressure, _GAPS[inside], min(gap, _GAPS[inside + 1]))
+        return _find_root(self.pressure, _GAPS[inside], min(gap, _GAPS[inside + 1]))
 
 
-def _root(function, low: float, high: float) -> float:
+def _find_root(function, low: float, high: float) -> float:
     from scipy.optimize import brentq
 
     return float(brentq(lambda gap: float(function(gap)), low, high, xtol=1e-16 * high, rtol=1e-14))

@@ -9,7 +9,7 @@ import numpy as np
 from softafm.checks.validate import positive
 from softafm.compiled.formulas import Term
 from softafm.surfaces.law import SurfaceLaw
-from softafm.surfaces.limits import length
+from softafm.surfaces.limits import check_length
 
 
 @dataclass(frozen=True)
@@ -44,8 +44,8 @@ class Morse(SurfaceLaw):
     def __post_init__(self):
         W = positive("work_of_adhesion", self.work_of_adhesion, "J/m²")
         object.__setattr__(self, "work_of_adhesion", W)
-        object.__setattr__(self, "z0", length("z0", self.z0))
-        object.__setattr__(self, "decay", length("decay", self.decay))
+        object.__setattr__(self, "z0", check_length("z0", self.z0))
+        object.__setattr__(self, "decay", check_length("decay", self.decay))
 
     @property
     def equilibrium_gap(self) -> float:

@@ -8,7 +8,7 @@ import numpy as np
 from softafm.checks.validate import positive
 from softafm.compiled.formulas import Term
 from softafm.surfaces.law import SurfaceLaw
-from softafm.surfaces.limits import length
+from softafm.surfaces.limits import check_length
 
 
 @dataclass(frozen=True)
@@ -36,7 +36,7 @@ class Repulsion(SurfaceLaw):
     def __post_init__(self):
         P0 = positive("pressure_at_zero", self.pressure_at_zero, "Pa")
         object.__setattr__(self, "pressure_at_zero", P0)
-        object.__setattr__(self, "decay", length("decay", self.decay))
+        object.__setattr__(self, "decay", check_length("decay", self.decay))
 
     @property
     def terms(self) -> tuple[Term]:

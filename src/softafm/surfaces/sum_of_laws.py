@@ -27,7 +27,7 @@ class SumOfLaws(SurfaceLaw):
     parts: tuple[SurfaceLaw, ...]
 
     def __post_init__(self):
-        object.__setattr__(self, "parts", _laws(self.parts))
+        object.__setattr__(self, "parts", _check_laws(self.parts))
 
     @property
     def closest_gap(self) -> float:
@@ -44,7 +44,7 @@ class SumOfLaws(SurfaceLaw):
         return tuple(sum(parts) for parts in zip(*results, strict=True))
 
 
-def _laws(given) -> tuple[SurfaceLaw, ...]:
+def _check_laws(given) -> tuple[SurfaceLaw, ...]:
     if isinstance(given, str | bytes | dict) or not hasattr(given, "__iter__"):
         raise ValueError(f"parts = {given!r}: must be a list of surface laws")
     flat: list[SurfaceLaw] = []

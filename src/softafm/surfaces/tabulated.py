@@ -11,7 +11,7 @@ import numpy as np
 from softafm.checks.validate import numbers, whole
 from softafm.compiled.formulas import Term
 from softafm.surfaces.law import SurfaceLaw
-from softafm.surfaces.limits import length
+from softafm.surfaces.limits import check_length
 
 _LEAST = 4
 _SLOWEST = 1.5
@@ -68,7 +68,7 @@ class Tabulated(SurfaceLaw):
         points: int = 400,
     ) -> "Tabulated":
         """Sample a Python function of the gap (m) at gaps spaced evenly in their logarithm."""
-        shortest, longest = length("shortest", shortest), length("longest", longest)
+        shortest, longest = check_length("shortest", shortest), check_length("longest", longest)
         if not shortest < longest:
             raise ValueError(
                 f"longest = {longest:g} m: must be above the shortest gap, {shortest:g} m"
@@ -85,7 +85,7 @@ class Tabulated(SurfaceLaw):
         width, rise = np.diff(h), np.diff(p) / np.diff(h)
         rate = PchipInterpolator(h, p).derivative()(h)
         rate[0] = rate[0] if rate[0] < 0 else rise[0]
-        power = _power(self.gaps, self.pressures) if p[-1] else 2.0
+        power = _find_power(self.gaps, self.pressures) if p[-1] else 2.0
         rate[-1] = -power * p[-1] / h[-1]
         square = np.append((3 * rise - 2 * rate[:-1] - rate[1:]) / width, 0.0)
         cube = np.append((rate[:-1] + rate[1:] - 2 * rise) / width**2, 0.0)
@@ -116,7 +116,7 @@ def _tabulated(h, table):
     return p * core * tail, slope, potential
 
 
-def _power(gaps: Sequence[float], pressures: Sequence[float]) -> float:
+def _find_power(gaps: Sequence[float], pressures: Sequence[float]) -> float:
     power = log(pressures[-2] / pressures[-1]) / log(gaps[-1] / gaps[-2])
     return max(power, _SLOWEST)
 

@@ -7,7 +7,7 @@ from typing import ClassVar
 from softafm.checks.validate import finite, positive
 from softafm.compiled.formulas import Term
 from softafm.surfaces.law import SurfaceLaw
-from softafm.surfaces.limits import length
+from softafm.surfaces.limits import check_length
 
 
 @dataclass(frozen=True)
@@ -42,13 +42,13 @@ class VanDerWaals(SurfaceLaw):
 
     def __post_init__(self):
         object.__setattr__(self, "hamaker", positive("hamaker", self.hamaker, "J"))
-        object.__setattr__(self, "z0", length("z0", self.z0))
-        object.__setattr__(self, "exponent", _exponent(self.exponent))
+        object.__setattr__(self, "z0", check_length("z0", self.z0))
+        object.__setattr__(self, "exponent", _check_exponent(self.exponent))
 
     @classmethod
     def from_repulsion(cls, hamaker: float, strength: float, exponent: float) -> "VanDerWaals":
         """Build the law from H, J, and a repulsion of its own, strength/hⁿ, strength in Pa mⁿ."""
-        H, n = positive("hamaker", hamaker, "J"), _exponent(exponent)
+        H, n = positive("hamaker", hamaker, "J"), _check_exponent(exponent)
         B = positive("strength", strength, "Pa m^n")
         try:
             return cls(H, (6 * pi * B / H) ** (1 / (n - 3)), n)
@@ -64,7 +64,7 @@ class VanDerWaals(SurfaceLaw):
         W
             Work per area to part the surfaces, J/m².
         """
-        W, z0, n = positive("W", W, "J/m²"), length("z0", z0), _exponent(exponent)
+        W, z0, n = positive("W", W, "J/m²"), check_length("z0", z0), _check_exponent(exponent)
         return cls(12 * pi * z0**2 * W * (n - 1) / (n - 3), z0, n)
 
     @property
@@ -102,7 +102,7 @@ def _van_der_waals(h, H, z0, n):
     return repulsion - attraction, slope, h * (repulsion / (n - 1) - 0.5 * attraction)
 
 
-def _exponent(value: float) -> float:
+def _check_exponent(value: float) -> float:
     number = finite("exponent", value, "")
     if not 3 < number <= 100:
         raise ValueError(

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from softafm.checks.gathering import worst_of_each_kind
+from softafm.checks.gathering import keep_worst
 from softafm.errors import AccuracyWarning, DivergedError
 
 UNKNOWN, DONE, FAILED, WARNED = range(4)
@@ -62,15 +62,15 @@ class Work:
                 given = self.run(point)
                 found = {name: self._value(given, name) for name in self.shapes}
             except (Exception, SystemExit) as error:
-                fail(block, place, _reason(error))
+                fail(block, place, _word_reason(error))
                 return
         for name, value in found.items():
             block.values[name][place] = value
         block.state[place] = WARNED if told else DONE
         if told:
             doubts = [each.message for each in told if isinstance(each.message, AccuracyWarning)]
-            texts = map(str, worst_of_each_kind(doubts))
-            block.warnings[place] = "; ".join(map(one_line, texts))
+            texts = map(str, keep_worst(doubts))
+            block.warnings[place] = "; ".join(map(join_lines, texts))
 
     def _value(self, given: Mapping[str, Any], name: str) -> np.ndarray:
         if name not in given:
@@ -89,11 +89,11 @@ def fail(block: Block, place: int, reason: str) -> None:
     block.reasons[place] = reason
 
 
-def _reason(error: BaseException) -> str:
+def _word_reason(error: BaseException) -> str:
     ours = isinstance(error, ValueError | DivergedError) and str(error)
-    return one_line(str(error) if ours else f"{type(error).__name__}: {error}")
+    return join_lines(str(error) if ours else f"{type(error).__name__}: {error}")
 
 
-def one_line(text: str) -> str:
+def join_lines(text: str) -> str:
     """Return lines as sentences of one."""
     return "; ".join(" ".join(line.split()) for line in text.splitlines() if line.strip())

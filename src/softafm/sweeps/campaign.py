@@ -20,29 +20,13 @@ from softafm.contact import Contact
 from softafm.errors import AccuracyWarning
 from softafm.experiment.config import build_table, experiment_from
 from softafm.experiment.fields import Keys, keys_of, replaced
+from softafm.modes import MODES, Axes, Mode
 from softafm.results.content import VARIABLES
 from softafm.sweeps.designs import Design
 
 Coordinate = tuple[tuple[str, ...], np.ndarray, Mapping[str, str]]
 """Dimensions, values and attributes."""
 
-_TAP = (
-    "virial", "dissipation", "force_max", "force_min", "force_min_approach", "force_mean",
-    "contact_time", "indentation", "viscous_loss", "cycles_run",
-)  # fmt: skip
-_CURVE = ("force_max", "force_min", "force_min_approach", "loop_energy", "viscous_loss")
-_SWEEP = (
-    "mean_height", "phase", "virial", "dissipation", "force_mean", "force_max", "force_min",
-    "contact_time", "indentation",
-)  # fmt: skip
-OBSERVABLES = {
-    "force-distance": _CURVE,
-    "force-spectroscopy": _CURVE,
-    "tapping-cycle": _TAP,
-    "approach-curve": _SWEEP,
-}
-"""What a run of each mode gives; that of an approach curve over branch and amplitude ratio."""
-_OVER_RATIOS = ("amplitude_ratio", "first_ratio", "last_ratio", "points")
 _TRIED = 200
 """Values of a parameter, or samples, for which an experiment is built before anything starts."""
 
@@ -115,7 +99,7 @@ class RunExperiment:
 
     def __call__(self, values: Mapping[str, Any]) -> dict[str, Any]:
         experiment = self.experiment(values)
-        kept = _kept(experiment.contact)
+        kept = _reuse_contact(experiment.contact)
         found = replace(experiment, contact=kept).observables()
         return {name: found[name] for name in self.names}
 
@@ -123,33 +107,35 @@ class RunExperiment:
         """Return the experiment of a run; ConfigError if there is none."""
         document = self.document
         for path, value in values.items():
-            document = replaced(document, _keys(path), value)
-        return experiment_from(document, self.folder, _kept_table)
+            document = replaced(document, _split_path(path), value)
+        return experiment_from(document, self.folder, _reuse_table)
 
 
 @lru_cache(maxsize=1024)
-def _keys(path: str) -> Keys:
+def _split_path(path: str) -> Keys:
     return keys_of(path)
 
 
-def _kept(contact: Contact) -> Contact:
+def _reuse_contact(contact: Contact) -> Contact:
     """Return an equal contact that has worked out its scales already, if one is at hand."""
     try:
-        return _contact(contact.tip, contact.sample, contact.surface)
+        return _build_contact(contact.tip, contact.sample, contact.surface)
     except TypeError:  # a part that cannot be hashed
         return contact
 
 
-def _kept_table(name: str, document: Mapping[str, Any], mode: Any, folder: Path) -> Any:
+def _reuse_table(name: str, document: Mapping[str, Any], mode: Mode | None, folder: Path) -> Any:
     """Return what a table describes, the same object for equal tables; it warns each time."""
-    thing, told = _table(name, json.dumps(document.get(name)), mode, folder)
+    thing, told = _build_table(name, json.dumps(document.get(name)), mode, folder)
     for text in told:
         warnings.warn(text, AccuracyWarning, stacklevel=2)
     return thing
 
 
 @lru_cache(maxsize=256)
-def _table(name: str, written: str, mode: Any, folder: Path) -> tuple[Any, tuple[str, ...]]:
+def _build_table(
+    name: str, written: str, mode: Mode | None, folder: Path
+) -> tuple[Any, tuple[str, ...]]:
     content = json.loads(written)
     with warnings.catch_warnings(record=True) as told:
         warnings.simplefilter("always", AccuracyWarning)
@@ -158,11 +144,11 @@ def _table(name: str, written: str, mode: Any, folder: Path) -> tuple[Any, tuple
 
 
 @lru_cache(maxsize=64)
-def _contact(tip: Any, sample: Any, surface: Any) -> Contact:
+def _build_contact(tip: Any, sample: Any, surface: Any) -> Contact:
     return Contact(tip, sample, surface)
 
 
-def experiment_campaign(
+def plan_experiments(
     document: Mapping[str, Any], folder: Path, design: Design, names: Sequence[str] | None
 ) -> Campaign:
     """Return the campaign of an experiment's document, having tried it.
@@ -175,33 +161,29 @@ def experiment_campaign(
     """
     from softafm.experiment.regime import expected_seconds
 
-    mode = document["mode"]
-    observed = tuple(OBSERVABLES[mode] if names is None else names)
-    _refuse_unknown(observed, OBSERVABLES[mode])
+    mode = MODES[document["mode"]]
+    observed = tuple(mode.observed if names is None else names)
+    _refuse_unknown(observed, mode.observed)
     run = RunExperiment(document, folder, observed)
-    tried = _tried(run, design)
+    tried = _try_out(run, design)
     costs = [expected_seconds(experiment) for experiment in tried[:: max(1, len(tried) // 20)]]
     coordinates: dict[str, Coordinate] = dict(design.coordinates)
-    dimensions: tuple[str, ...] = ()
-    shape: tuple[int, ...] = ()
-    if mode == "approach-curve":
-        _refuse_ratios(design)
-        ratios = np.array(tried[0].motion.amplitude_ratio)
-        branches = np.array(("attractive", "unstable", "repulsive"))
-        dimensions, shape = ("branch", "amplitude_ratio"), (branches.size, ratios.size)
-        for name, values in zip(dimensions, (branches, ratios), strict=True):
-            units, long_name = VARIABLES[name]
-            coordinates[name] = ((name,), values, {"units": units, "long_name": long_name})
+    _refuse_axes(design, mode.axes)
+    axes = [np.array(values) for values in mode.axes.values(tried[0].motion)]
+    for name, values in zip(mode.axes.dims, axes, strict=True):
+        units, long_name = VARIABLES[name]
+        coordinates[name] = ((name,), values, {"units": units, "long_name": long_name})
+    shape = tuple(values.size for values in axes)
     return Campaign(
         dimensions=design.dimensions,
         shape=design.shape,
         coordinates=coordinates,
-        observables=tuple(Observable(n, *VARIABLES[n], dimensions, shape) for n in observed),
-        point=design.written_at,
+        observables=tuple(Observable(n, *VARIABLES[n], mode.axes.dims, shape) for n in observed),
+        point=design.write_at,
         run=run,
         identity={
             "experiment": document,
-            "files": _digests(document, folder),
+            "files": _hash_files(document, folder),
             "observables": list(observed),
             "softafm_version": softafm.__version__,
         },
@@ -219,19 +201,21 @@ def _refuse_unknown(observed: Sequence[Any], known: Sequence[str]) -> None:
             raise ConfigError([f"sweep.observables: '{name}' is there twice; leave one out"])
 
 
-def _refuse_ratios(design: Design) -> None:
+def _refuse_axes(design: Design, axes: Axes) -> None:
+    """Raise ConfigError if what varies changes what the results of every run lie over."""
     for parameter in design.parameters:
         path = parameter.field.path
-        if path in (f"motion.{key}" for key in _OVER_RATIOS):
+        if path in (f"motion.{key}" for key in axes.keys):
+            over = " and ".join(axes.dims)
             raise ConfigError(
                 [
-                    f"sweep.vary.'{path}': the results of an approach curve lie over its amplitude "
-                    "ratios already; list them in [motion] and vary something else"
+                    f"sweep.vary.'{path}': the results of every run lie over {over} already, which "
+                    "this would change; set it in [motion] and vary something else"
                 ]
             )
 
 
-def _tried(run: RunExperiment, design: Design) -> list[Any]:
+def _try_out(run: RunExperiment, design: Design) -> list[Any]:
     """Return experiments that could be built, with every value of every parameter if few.
 
     A value may suit some values of the other parameters and not others; only one that suits none
@@ -248,7 +232,7 @@ def _tried(run: RunExperiment, design: Design) -> list[Any]:
                 index = (*anchor[:axis], int(i), *anchor[axis + 1 :])
                 try:
                     if index not in built:
-                        built[index] = run.experiment(design.written_at(index))
+                        built[index] = run.experiment(design.write_at(index))
                     break
                 except ConfigError as error:
                     refusals.append(error)
@@ -262,16 +246,16 @@ def _tried(run: RunExperiment, design: Design) -> list[Any]:
     return list(built.values())
 
 
-def _digests(document: Any, folder: Path) -> dict[str, str]:
+def _hash_files(document: Any, folder: Path) -> dict[str, str]:
     """Return the SHA-256 of the files that a document names, by name."""
     if isinstance(document, list):
-        return {name: d for entry in document for name, d in _digests(entry, folder).items()}
+        return {name: d for entry in document for name, d in _hash_files(entry, folder).items()}
     found: dict[str, str] = {}
     for key, value in document.items() if isinstance(document, Mapping) else ():
         if key == "file" and isinstance(value, str) and (folder / value).is_file():
             found[value] = hashlib.sha256((folder / value).read_bytes()).hexdigest()
         else:
-            found |= _digests(value, folder)
+            found |= _hash_files(value, folder)
     return found
 
 
@@ -302,7 +286,7 @@ class RunFunction:
         return found
 
 
-def function_campaign(
+def plan_calls(
     function: Callable[..., Any], design: Design, names: Sequence[str] | None
 ) -> Campaign:
     """Return the campaign of a function, having called it once.
@@ -328,7 +312,7 @@ def function_campaign(
     except Exception as error:
         reason = " ".join(f"{type(error).__name__}: {error}".split())
         raise ConfigError(
-            [f"sweep: the first run, of {name} with {_told(first)}, failed: {reason}"]
+            [f"sweep: the first run, of {name} with {_write_values(first)}, failed: {reason}"]
         ) from error
     seconds = perf_counter() - started
     observed = tuple(scalars if names is None else names)
@@ -344,12 +328,12 @@ def function_campaign(
         dimensions=design.dimensions,
         shape=design.shape,
         coordinates=design.coordinates,
-        observables=tuple(_observable(n, scalars[n][1]) for n in observed),
+        observables=tuple(_describe_observable(n, scalars[n][1]) for n in observed),
         point=design.at,
         run=run,
         identity={
             "function": f"{getattr(function, '__module__', '')}.{name}",
-            "source": _source(function),
+            "source": _find_source(function),
             "observables": list(observed),
             "softafm_version": softafm.__version__,
         },
@@ -357,16 +341,16 @@ def function_campaign(
     )
 
 
-def _observable(name: str, attributes: Mapping[str, str]) -> Observable:
+def _describe_observable(name: str, attributes: Mapping[str, str]) -> Observable:
     unit, long_name = (str(attributes.get(key, "")) for key in ("units", "long_name"))
     return Observable(name, unit, long_name)
 
 
-def _told(values: Mapping[str, Any]) -> str:
+def _write_values(values: Mapping[str, Any]) -> str:
     return ", ".join(f"{name} = {shown(value)}" for name, value in values.items())
 
 
-def _source(function: Any) -> str | None:
+def _find_source(function: Any) -> str | None:
     try:
         return inspect.getsource(getattr(function, "py_func", function))
     except (OSError, TypeError):  # it was not defined in a file

@@ -69,9 +69,9 @@ class Design:
     def at(self, index: Sequence[int]) -> dict[str, Any]:
         """Return the values of a run, in SI, by the paths of the fields."""
         where = dict(zip(self.dimensions, index, strict=True))
-        return {p.field.path: _python(p.values[where[p.dimension]]) for p in self.parameters}
+        return {p.field.path: _convert(p.values[where[p.dimension]]) for p in self.parameters}
 
-    def written_at(self, index: Sequence[int]) -> dict[str, Any]:
+    def write_at(self, index: Sequence[int]) -> dict[str, Any]:
         """Return the values of a run as an experiment file has them."""
         values = self.at(index)
         return {p.field.path: p.field.written(values[p.field.path]) for p in self.parameters}
@@ -82,7 +82,7 @@ class Design:
         return {
             self.names[p.field.path]: (
                 (p.dimension,),
-                _array(p.values),
+                _make_array(p.values),
                 {
                     **({"units": p.field.unit} if p.field.unit else {}),
                     "long_name": p.field.path,
@@ -92,7 +92,7 @@ class Design:
         }
 
 
-def design_of(
+def make_design(
     kind: str,
     vary: Mapping[Any, Any],
     field: Callable[[str], Field],
@@ -135,23 +135,23 @@ def design_of(
     ]
     grid = kind == "grid"
     try:
-        count, seed = _samples(kind, samples), whole("sweep.seed", seed, 0, 2**63 - 1)
+        count, seed = _check_samples(kind, samples), whole("sweep.seed", seed, 0, 2**63 - 1)
     except ValueError as error:
         raise ConfigError([*problems, str(error)]) from None
     columns: list[list[tuple[Field, Any]]] = []
     for group, written in zip(groups, vary.values(), strict=True):
         try:
-            columns.append(_group(group, written, field, grid))
+            columns.append(_read_group(group, written, field, grid))
         except ConfigError as error:
             problems += str(error).splitlines()
     if problems:
         raise ConfigError(problems)
-    names = _names(paths, taken)
+    names = _name_dimensions(paths, taken)
     if not grid:
-        return _sampled(kind, columns, names, count, seed)
+        return _draw_sample(kind, columns, names, count, seed)
     sizes = [len(group[0][1]) for group in columns]
     if prod(sizes) > MOST_RUNS:
-        raise ConfigError([_too_many(prod(sizes), sizes, groups)])
+        raise ConfigError([_refuse_size(prod(sizes), sizes, groups)])
     dimensions = ["_".join(names[field.path] for field, _ in group) for group in columns]
     parameters = [
         Parameter(field, dimension, values)
@@ -161,7 +161,7 @@ def design_of(
     return Design(tuple(dimensions), tuple(sizes), tuple(parameters), names)
 
 
-def _samples(kind: str, samples: int | None) -> int:
+def _check_samples(kind: str, samples: int | None) -> int:
     if kind == "grid":
         if samples is not None:
             raise ValueError(
@@ -174,7 +174,7 @@ def _samples(kind: str, samples: int | None) -> int:
     return whole("sweep.samples", samples, 1, MOST_RUNS)
 
 
-def _too_many(runs: int, sizes: list[int], groups: list[tuple[str, ...]]) -> str:
+def _refuse_size(runs: int, sizes: list[int], groups: list[tuple[str, ...]]) -> str:
     most = groups[int(np.argmax(sizes))]
     return (
         f"sweep.vary: a grid of {runs:.3g} runs; a store holds at most {MOST_RUNS:.0e}: take fewer "
@@ -182,10 +182,10 @@ def _too_many(runs: int, sizes: list[int], groups: list[tuple[str, ...]]) -> str
     )
 
 
-def _group(group: tuple[str, ...], written: Any, field, grid: bool) -> list[tuple[Field, Any]]:
+def _read_group(group: tuple[str, ...], written: Any, field, grid: bool) -> list[tuple[Field, Any]]:
     """Return the fields that vary along one dimension, each with a list of values or a range."""
     if len(group) == 1:
-        return [_column(group[0], written, field, grid)]
+        return [_read_column(group[0], written, field, grid)]
     together = ", ".join(group)
     if isinstance(written, str | Mapping) or not isinstance(written, Sequence | np.ndarray):
         raise ConfigError([f"sweep.vary.'{together}': must be a list of values for each of them"])
@@ -196,7 +196,7 @@ def _group(group: tuple[str, ...], written: Any, field, grid: bool) -> list[tupl
                 "a list of values for each field"
             ]
         )
-    columns = [_column(path, w, field, True) for path, w in zip(group, written, strict=True)]
+    columns = [_read_column(path, w, field, True) for path, w in zip(group, written, strict=True)]
     sizes = [len(values) for _, values in columns]
     if len(set(sizes)) > 1:
         told = ", ".join(f"'{p}' has {n}" for p, n in zip(group, sizes, strict=True))
@@ -206,7 +206,7 @@ def _group(group: tuple[str, ...], written: Any, field, grid: bool) -> list[tupl
     return columns
 
 
-def _column(path: str, written: Any, field, grid: bool) -> tuple[Field, Any]:
+def _read_column(path: str, written: Any, field, grid: bool) -> tuple[Field, Any]:
     if not isinstance(path, str):
         raise ConfigError([f"sweep.vary = {shown(path)}: must be a field, such as 'sample.E_inf'"])
     try:
@@ -214,11 +214,11 @@ def _column(path: str, written: Any, field, grid: bool) -> tuple[Field, Any]:
     except ValueError as error:
         raise ConfigError([f"sweep.vary.'{path}': {error}"]) from None
     if isinstance(written, Between | Mapping):
-        return what, _range(what, written, grid)
-    return what, _listed(what, written)
+        return what, _read_range(what, written, grid)
+    return what, _read_list(what, written)
 
 
-def _listed(field: Field, written: Any) -> list[Any]:
+def _read_list(field: Field, written: Any) -> list[Any]:
     if isinstance(written, str | bytes) or not hasattr(written, "__iter__"):
         raise ConfigError(
             [same_text(field.path, None, written, "must be a list of values, or a range")]
@@ -226,7 +226,7 @@ def _listed(field: Field, written: Any) -> list[Any]:
     values, problems = [], []
     for index, value in enumerate(written):
         try:
-            values.append(field.read(_python(value)))
+            values.append(field.read(_convert(value)))
         except (ValueError, OverflowError) as error:
             problems.append(same_text(field.path, index, value, error))
             if len(problems) == 3:
@@ -238,7 +238,7 @@ def _listed(field: Field, written: Any) -> list[Any]:
     return values
 
 
-def _range(field: Field, written: Between | Mapping, grid: bool) -> Any:
+def _read_range(field: Field, written: Between | Mapping, grid: bool) -> Any:
     """Return a range's values in a grid, or a ``Between`` in SI."""
     path = f"sweep.vary.'{field.path}'"
     points, spacing = None, "linear"
@@ -265,7 +265,7 @@ def _range(field: Field, written: Between | Mapping, grid: bool) -> Any:
     ends = []
     for key, end in (("from", low), ("to", high)):
         try:
-            ends.append(field.read(_python(end)))
+            ends.append(field.read(_convert(end)))
         except (ValueError, OverflowError) as error:
             raise ConfigError([f"{path}.{key} = {shown(end)}: {error}"]) from None
         if isinstance(ends[-1], bool | str) or not isinstance(ends[-1], int | float):
@@ -288,28 +288,28 @@ def _range(field: Field, written: Between | Mapping, grid: bool) -> Any:
     return (np.geomspace if spacing == "log" else np.linspace)(start, stop, points)
 
 
-def _sampled(kind: str, columns, names: Mapping[str, str], count: int, seed: int) -> Design:
+def _draw_sample(kind: str, columns, names: Mapping[str, str], count: int, seed: int) -> Design:
     """Draw a sample: a column of numbers from 0 to 1 for each group."""
-    shares = _unit_sample(kind, len(columns), count, seed)
+    shares = _draw_unit_sample(kind, len(columns), count, seed)
     parameters = []
     for group, share in zip(columns, shares.T, strict=True):
         for field, drawn in group:
-            parameters.append(Parameter(field, "sample", _drawn(drawn, share)))
+            parameters.append(Parameter(field, "sample", _draw_value(drawn, share)))
     return Design(("sample",), (count,), tuple(parameters), names)
 
 
-def _drawn(drawn: Any, share: np.ndarray) -> Any:
+def _draw_value(drawn: Any, share: np.ndarray) -> Any:
     if isinstance(drawn, Between):
         low, high = float(drawn.low), float(drawn.high)
         if drawn.log:
             return low * (high / low) ** share
         return low + (high - low) * share
     picked = np.minimum((share * len(drawn)).astype(int), len(drawn) - 1)
-    values = _array(drawn)
+    values = _make_array(drawn)
     return values[picked] if values.dtype.kind in "fib" else [drawn[i] for i in picked]
 
 
-def _unit_sample(kind: str, columns: int, count: int, seed: int) -> np.ndarray:
+def _draw_unit_sample(kind: str, columns: int, count: int, seed: int) -> np.ndarray:
     """Return ``count`` points in the unit cube, shape (count, columns)."""
     if kind == "random":
         return np.random.default_rng(seed).random((count, columns))
@@ -321,7 +321,7 @@ def _unit_sample(kind: str, columns: int, count: int, seed: int) -> np.ndarray:
         return engine(columns, rng=seed).random(count)
 
 
-def _names(paths: Sequence[str], taken: Sequence[str]) -> dict[str, str]:
+def _name_dimensions(paths: Sequence[str], taken: Sequence[str]) -> dict[str, str]:
     """Return for each path its last key, or where that is not its alone the whole path."""
     last = [path.rpartition(".")[2] for path in paths]
     return {
@@ -330,20 +330,20 @@ def _names(paths: Sequence[str], taken: Sequence[str]) -> dict[str, str]:
     }
 
 
-def _python(value: Any) -> Any:
+def _convert(value: Any) -> Any:
     """Return a NumPy scalar as what Python has for it."""
     return value.item() if isinstance(value, np.generic) else value
 
 
-def _array(values: Any) -> np.ndarray:
+def _make_array(values: Any) -> np.ndarray:
     """Return values as an array of numbers or flags if they all are, else of texts."""
-    array = np.asarray(values) if not _mixed(values) else np.array([])
+    array = np.asarray(values) if not _are_mixed(values) else np.array([])
     if array.ndim == 1 and array.size and array.dtype.kind in "fib":
         return array
     return np.array([value if isinstance(value, str) else str(value) for value in values])
 
 
-def _mixed(values: Any) -> bool:
+def _are_mixed(values: Any) -> bool:
     if isinstance(values, np.ndarray):
         return False
     kinds = {type(value) for value in values}

@@ -19,8 +19,8 @@ from itertools import islice
 from typing import TYPE_CHECKING, Any
 
 import softafm
-from softafm.sweeps.block import Block, Work, one_line
-from softafm.sweeps.isolated import carried_apart
+from softafm.sweeps.block import Block, Work, join_lines
+from softafm.sweeps.isolated import carry_apart
 
 if TYPE_CHECKING:
     from distributed import Client
@@ -64,7 +64,7 @@ class _Task:
     losses: int = 0
 
 
-def cores() -> int:
+def count_cores() -> int:
     """Return how many processor cores this process may use."""
     if hasattr(os, "sched_getaffinity"):
         return max(1, len(os.sched_getaffinity(0)))
@@ -105,7 +105,7 @@ def carry_out(
         for number, points in blocks:
             keep(number, work(points))
         return
-    with _client(scheduler, workers) as client:
+    with _connect(scheduler, workers) as client:
         _carry_out_by(client, work, iter(blocks), keep)
 
 
@@ -121,18 +121,18 @@ def _carry_out_by(
     try:
         # A task as any other: Dask does it again where it is lost.
         pickled = cloudpickle.dumps(work)
-        unpacked = client.submit(_unpacked, pickled, _versions(), pure=False)
+        unpacked = client.submit(_unpack, pickled, _list_versions(), pure=False)
         under_way = as_completed(loop=client.loop)
 
         def send(task: _Task) -> None:
             # Pickled, as what Dask understands it keeps for a while, piece by piece.
             points = cloudpickle.dumps(task.points)
-            future = client.submit(_done, unpacked, points, task.losses > 0, pure=False)
+            future = client.submit(_do_block, unpacked, points, task.losses > 0, pure=False)
             tasks[future.key] = task
             under_way.add(future)
 
         while True:
-            for number, points in islice(blocks, max(0, _most_in_flight(client) - len(tasks))):
+            for number, points in islice(blocks, max(0, _count_in_flight(client) - len(tasks))):
                 send(_Task(number, points))
             if not tasks:
                 break
@@ -145,13 +145,13 @@ def _carry_out_by(
                 if task.losses > _MOST_LOSSES:
                     raise Halted("workers are lost again and again; see their logs") from None
                 if unpacked.status == "error":  # one was lost while it unpacked
-                    unpacked = client.submit(_unpacked, pickled, _versions(), pure=False)
+                    unpacked = client.submit(_unpack, pickled, _list_versions(), pure=False)
                 send(task)
                 continue
             except (CancelledError, CommClosedError):
                 raise
             except Exception as error:
-                reason = one_line(f"{type(error).__name__}: {error}")
+                reason = join_lines(f"{type(error).__name__}: {error}")
                 raise Halted(f"the workers cannot do this work: {reason}") from None
             del future
             keep(task.number, block)
@@ -159,35 +159,35 @@ def _carry_out_by(
         raise Halted("the scheduler is gone, or was told to drop the work") from None
 
 
-def _most_in_flight(client: "Client") -> int:
+def _count_in_flight(client: "Client") -> int:
     """Return how many blocks keep all workers busy: two for each, so that none has to wait."""
     return max(4, 2 * sum(client.nthreads().values()))
 
 
-def _versions() -> dict[str, str]:
+def _list_versions() -> dict[str, str]:
     return {"softafm": softafm.__version__, "Python": ".".join(map(str, sys.version_info[:2]))}
 
 
-def _unpacked(pickled: bytes, versions: dict[str, str]) -> Work:
+def _unpack(pickled: bytes, versions: dict[str, str]) -> Work:
     """Unpickle the work, on a worker."""
-    if (ours := _versions()) != versions:
+    if (ours := _list_versions()) != versions:
         name = next(name for name in versions if versions[name] != ours[name])
         raise RuntimeError(f"a worker has {name} {ours[name]}, and not {versions[name]}")
     return pickle.loads(pickled)
 
 
-def _done(work: Work, pickled: bytes, apart: bool) -> Block:
+def _do_block(work: Work, pickled: bytes, apart: bool) -> Block:
     """Do a block on a worker, where one is done at a time, however many threads it has."""
     points = pickle.loads(pickled)
     with _ONE_AT_A_TIME:
-        return carried_apart(work, points) if apart else work(points)
+        return carry_apart(work, points) if apart else work(points)
 
 
 @contextmanager
-def _client(scheduler: str | None, workers: int | None) -> Iterator["Client"]:
+def _connect(scheduler: str | None, workers: int | None) -> Iterator["Client"]:
     """Connect to a scheduler, or start one with workers; they say nothing."""
     with ExitStack() as stack:
-        stack.enter_context(_quiet())
+        stack.enter_context(_silence())
         import dask
         from distributed import Client, LocalCluster
 
@@ -199,7 +199,7 @@ def _client(scheduler: str | None, workers: int | None) -> Iterator["Client"]:
                 folder = stack.enter_context(tempfile.TemporaryDirectory(prefix="softafm-"))
                 scheduler = stack.enter_context(
                     LocalCluster(
-                        n_workers=workers or cores(),
+                        n_workers=workers or count_cores(),
                         threads_per_worker=1,
                         processes=True,
                         host="127.0.0.1",
@@ -212,16 +212,16 @@ def _client(scheduler: str | None, workers: int | None) -> Iterator["Client"]:
             client = stack.enter_context(Client(scheduler, timeout=_CONNECT, set_as_default=False))
         except (OSError, RuntimeError) as error:
             if isinstance(scheduler, str):
-                raise Halted(f"scheduler = {scheduler}: {one_line(str(error))}") from None
+                raise Halted(f"scheduler = {scheduler}: {join_lines(str(error))}") from None
             raise Halted(
-                f"no worker processes could be started: {one_line(str(error))} (a script must "
+                f"no worker processes could be started: {join_lines(str(error))} (a script must "
                 "sweep under if __name__ == '__main__':)"
             ) from None
         yield client
 
 
 @contextmanager
-def _quiet() -> Iterator[None]:
+def _silence() -> Iterator[None]:
     """Keep what Dask logs and warns of from the user, who is told all that matters by us."""
     loggers = [logging.getLogger(name) for name in _LOGGERS]
     levels = [logger.level for logger in loggers]

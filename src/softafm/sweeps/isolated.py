@@ -18,7 +18,7 @@ from softafm.sweeps.block import Block, Work, fail
 _GONE = (EOFError, OSError, pickle.UnpicklingError)
 
 
-def carried_apart(work: Work, points: Sequence[Any]) -> Block:
+def carry_apart(work: Work, points: Sequence[Any]) -> Block:
     """Do all runs as ``work`` does; one that ends its process fails, and the others are done."""
     block, done = work.empty(len(points)), 0
     while done < len(points):
@@ -60,7 +60,7 @@ def _carry_on(work: Work, points: Sequence[Any], block: Block, first: int) -> in
                     f"a process for runs of their own could not start (exit code {code})"
                 ) from None
             if place < len(points):
-                fail(block, place, f"the run ended its process: {_ending(code)}")
+                fail(block, place, f"the run ended its process: {_describe_ending(code)}")
                 place += 1
         finally:
             process.kill()
@@ -79,7 +79,7 @@ def _copy(part: Block, block: Block, place: int) -> None:
             ours[place] = texts[0]
 
 
-def _ending(code: int) -> str:
+def _describe_ending(code: int) -> str:
     if code >= 0:
         return f"exit code {code}"
     with suppress(ValueError):

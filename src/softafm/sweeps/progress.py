@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from softafm.draw.summary import table_of
+from softafm.draw.summary import make_table
 from softafm.sweeps.block import FAILED, UNKNOWN, WARNED
 from softafm.sweeps.store import Store
 
@@ -47,7 +47,7 @@ class Status:
         return None if self.rate is None else (self.runs - self.done) / self.rate
 
 
-def status(path: str | Path) -> Status:
+def read_status(path: str | Path) -> Status:
     """Read from a store how far its sweep is.
 
     Raises
@@ -58,12 +58,12 @@ def status(path: str | Path) -> Status:
     store = Store(Path(path))
     counts = np.zeros(4, int)
     times, runs, example = [], [], None
-    for number in store.begun_blocks():
+    for number in store.list_begun_blocks():
         states = store.state(number)
         counts += np.bincount(states, minlength=4)[:4]
         if example is None and (states == FAILED).any():
-            example = _example(store, number, int(np.argmax(states == FAILED)))
-        finished = store.finished(number)
+            example = _find_example(store, number, int(np.argmax(states == FAILED)))
+        finished = store.read_finish(number)
         if finished is not None:
             times.append(finished)
             runs.append(int((states != UNKNOWN).sum()))
@@ -73,12 +73,12 @@ def status(path: str | Path) -> Status:
         failed=int(counts[FAILED]),
         warned=int(counts[WARNED]),
         running=store.in_use,
-        rate=_rate(np.array(times), np.array(runs), store.begun),
+        rate=_estimate_rate(np.array(times), np.array(runs), store.begun),
         example=example,
     )
 
 
-def _rate(times: np.ndarray, runs: np.ndarray, begun: float) -> float | None:
+def _estimate_rate(times: np.ndarray, runs: np.ndarray, begun: float) -> float | None:
     """Return the runs done in a second since the last begin, or within the last minutes."""
     if not times.size:
         return None
@@ -91,7 +91,7 @@ def _rate(times: np.ndarray, runs: np.ndarray, begun: float) -> float | None:
     return float(runs[recent].sum() / duration) if duration > 0 else None
 
 
-def _example(store: Store, number: int, place: int) -> str:
+def _find_example(store: Store, number: int, place: int) -> str:
     """Return where and why a run failed."""
     ranges = store.ranges(number)
     within = np.unravel_index(place, tuple(map(len, ranges)))
@@ -100,7 +100,7 @@ def _example(store: Store, number: int, place: int) -> str:
     return f"{where}: {store.texts('reason', number)[place]}"
 
 
-def in_words(seconds: float) -> str:
+def describe_duration(seconds: float) -> str:
     """Return a duration as a person would say it."""
     for limit, unit, name in ((60, 1, "s"), (3600, 60, "min"), (86400, 3600, "h")):
         if seconds < 2 * limit:
@@ -108,11 +108,11 @@ def in_words(seconds: float) -> str:
     return f"{seconds / 86400:.0f} days"
 
 
-def table(found: Status) -> "Table":
+def tabulate(found: Status) -> "Table":
     """Return a table of it for people."""
     word = "running" if found.running else "stopped; --resume goes on with it"
     word = "finished" if found.done == found.runs else word
-    told = table_of(f"sweep, {word}")
+    told = make_table(f"sweep, {word}")
     share = 100 * found.done / found.runs
     told.add_row("done", f"{found.done} of {found.runs}", f"runs, {share:.3g} %")
     told.add_row("failed", str(found.failed), found.example or "")
@@ -120,5 +120,5 @@ def table(found: Status) -> "Table":
     if found.rate is not None:
         told.add_row("rate", f"{found.rate:.3g}", "runs a second, of late")
         if found.seconds_left:
-            told.add_row("time left", in_words(found.seconds_left), "at this rate")
+            told.add_row("time left", describe_duration(found.seconds_left), "at this rate")
     return told

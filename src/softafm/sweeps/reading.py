@@ -7,16 +7,15 @@ from pathlib import Path
 from typing import Any
 
 from softafm.checks.refusals import ConfigError, nearest, one_of, shown
-from softafm.experiment import schema
 from softafm.experiment.fields import field_of, plain_field
 from softafm.experiment.takers import refuse_unless
+from softafm.modes import MODES
 from softafm.sweeps.campaign import (
-    OBSERVABLES,
     Campaign,
-    experiment_campaign,
-    function_campaign,
+    plan_calls,
+    plan_experiments,
 )
-from softafm.sweeps.designs import design_of
+from softafm.sweeps.designs import make_design
 
 
 @dataclass(frozen=True)
@@ -41,7 +40,7 @@ class Table:
         )
 
 
-def table_of(written: Any) -> Table:
+def read_table(written: Any) -> Table:
     """Read ``[sweep]``; ConfigError if it has other keys, or values of another kind."""
     if not isinstance(written, Mapping):
         raise ConfigError([f"sweep = {shown(written)}: must be a table, [sweep]"])
@@ -59,30 +58,30 @@ def table_of(written: Any) -> Table:
         if key in written and not isinstance(written[key], kind):
             raise ConfigError([f"sweep.{key} = {shown(written[key])}: must be {valid}"])
     values = {key: value for key, value in written.items() if key != "together"}
-    vary = dict(_flat(written.get("vary", {})))
+    vary = dict(_flatten(written.get("vary", {})))
     for index, group in enumerate(written.get("together", [])):
         if not isinstance(group, Mapping) or not group:
             raise ConfigError(
                 [f"sweep.together[{index}] = {shown(group)}: must be a table of fields and values"]
             )
-        group = dict(_flat(group))
+        group = dict(_flatten(group))
         vary[tuple(group)] = list(group.values())
     if "vary" in written or "together" in written:
         values["vary"] = vary
     return Table(**values)
 
 
-def _flat(tables: Mapping[str, Any], path: str = ""):
+def _flatten(tables: Mapping[str, Any], path: str = ""):
     """Yield paths and values, of tables within tables, too: TOML makes them of bare keys."""
     for key, value in tables.items():
         name = f"{path}.{key}" if path else key
         if isinstance(value, Mapping) and not {"from", "to"} & set(value) and value:
-            yield from _flat(value, name)
+            yield from _flatten(value, name)
         else:
             yield name, value
 
 
-def campaign_of(
+def make_campaign(
     what: Mapping[str, Any] | Callable[..., Any], folder: Path, table: Table, from_file: bool
 ) -> Campaign:
     """Return the campaign of an experiment's document, or of a function, having tried it.
@@ -104,20 +103,19 @@ def campaign_of(
     if isinstance(table.observables, str):
         raise ConfigError([f"sweep.observables = {shown(table.observables)}: must be a list"])
     kind, seed = table.design or "grid", table.seed or 0
-    design = partial(design_of, kind, table.vary, samples=table.samples, seed=seed)
+    design = partial(make_design, kind, table.vary, samples=table.samples, seed=seed)
     if callable(what):
-        return function_campaign(what, design(plain_field), table.observables)
+        return plan_calls(what, design(plain_field), table.observables)
     mode = what.get("mode")
-    modes = list(schema.MOTIONS)
     if mode is None:
-        raise ConfigError([f"mode: missing; must be {one_of(modes)}"])
-    if mode not in modes:
-        raise ConfigError([f"mode = {shown(mode)}: {nearest(mode, modes)}"])
+        raise ConfigError([f"mode: missing; must be {one_of(list(MODES))}"])
+    if not isinstance(mode, str) or mode not in MODES:
+        raise ConfigError([f"mode = {shown(mode)}: {nearest(mode, list(MODES))}"])
     paths = [p for key in table.vary for p in (key if isinstance(key, tuple) else (key,))]
-    field = partial(_field, what, paths, folder, not from_file)
-    taken = [*OBSERVABLES[mode], "branch", "amplitude_ratio", "sample"]
-    return experiment_campaign(what, folder, design(field, taken=taken), table.observables)
+    field = partial(_find_field, what, paths, folder, not from_file)
+    taken = [*MODES[mode].observed, *MODES[mode].axes.dims, "sample"]
+    return plan_experiments(what, folder, design(field, taken=taken), table.observables)
 
 
-def _field(document, varied, folder, bare, path):
+def _find_field(document, varied, folder, bare, path):
     return field_of(document, path, varied, folder, bare)

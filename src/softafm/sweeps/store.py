@@ -51,7 +51,7 @@ class Busy(StoreError):
     """A store that another process is writing."""
 
 
-def blocks_of(shape: Sequence[int], runs: int) -> tuple[int, ...]:
+def choose_blocks(shape: Sequence[int], runs: int) -> tuple[int, ...]:
     """Return the shape of blocks of about ``runs`` runs: whole last axes, the rest divided."""
     block: list[int] = []
     for size in reversed(shape):
@@ -138,7 +138,7 @@ class Store:
         key = ".".join(map(str, (*self._position(number), *(0,) * further)))
         return self.path / name / key
 
-    def begun_blocks(self) -> list[int]:
+    def list_begun_blocks(self) -> list[int]:
         """Return the numbers of the blocks of which anything is known, in order."""
         return sorted(self._numbers("state"))
 
@@ -166,16 +166,16 @@ class Store:
     def _read(self, name: str, number: int) -> np.ndarray | None:
         """Return the values of a chunk, flat; None if it is missing or damaged."""
         try:
-            return self._decoded(name, self._file(name, number))
+            return self._decode(name, self._file(name, number))
         except (FileNotFoundError, RuntimeError, ValueError):
             return None
 
-    def _decoded(self, name: str, file: Path) -> np.ndarray:
+    def _decode(self, name: str, file: Path) -> np.ndarray:
         """Return the values of a chunk, flat; RuntimeError or ValueError if it is damaged."""
         array = self._arrays[name]
         packed, count = file.read_bytes(), prod(array["chunks"])
         texts = array["dtype"] == "|O"
-        size = unpacked_size(packed)
+        size = read_unpacked_size(packed)
         if size > _LARGEST_TEXTS if texts else size != count * np.dtype(array["dtype"]).itemsize:
             raise ValueError(f"{file.name} has {size} bytes unpacked")
         content = _CODEC.decode(packed)
@@ -208,19 +208,19 @@ class Store:
         for name in sorted(self._told, key=lambda name: name not in over_runs):
             told = self._told[name]
             described = {key: each for key, each in told.items() if key != "_ARRAY_DIMENSIONS"}
-            found[name] = (told["_ARRAY_DIMENSIONS"], self._loaded(name), described)
+            found[name] = (told["_ARRAY_DIMENSIONS"], self._load_array(name), described)
         return found
 
-    def _loaded(self, name: str) -> np.ndarray:
+    def _load_array(self, name: str) -> np.ndarray:
         array = self._arrays[name]
         try:
             if name not in (*self._observables, *RESERVED):
                 file = self.path / name / ".".join("0" * max(1, len(array["shape"])))
-                return self._decoded(name, file).reshape(array["shape"]).copy()
+                return self._decode(name, file).reshape(array["shape"]).copy()
             kind = _TEXT if array["dtype"] == "|O" else array["dtype"]
             full = np.full(array["shape"], _EMPTY.get(name, np.nan), kind)
             for number in self._numbers(name):
-                values = self._decoded(name, self._file(name, number)).reshape(array["chunks"])
+                values = self._decode(name, self._file(name, number)).reshape(array["chunks"])
                 place = tuple(slice(r.start, r.stop) for r in self.ranges(number))
                 full[place] = values[tuple(slice(len(r)) for r in self.ranges(number))]
         except (OSError, RuntimeError, ValueError) as error:
@@ -242,7 +242,7 @@ class Store:
         """Return the numbers of the blocks that are to be run, having read all others."""
         return [number for number in range(self.block_count) if not self.is_whole(number)]
 
-    def finished(self, number: int) -> float | None:
+    def read_finish(self, number: int) -> float | None:
         """Return when a block was written, s since 1970; None if it was not."""
         try:
             return self._file("state", number).stat().st_mtime
@@ -261,7 +261,7 @@ class Store:
     def writing(self) -> Iterator[None]:
         """Keep other processes from writing meanwhile; Busy if one does already."""
         with open(self._lock, "ab") as lock:
-            if not _locked(lock):
+            if not _try_lock(lock):
                 raise Busy(f"{self.path}: another process is at work on it")
             for part in self.path.glob("*/*.part"):  # of a process that was killed
                 part.unlink()
@@ -280,7 +280,7 @@ class Store:
         """Whether a process is writing."""
         try:
             with open(self._lock, "ab") as lock:
-                return not _locked(lock)
+                return not _try_lock(lock)
         except OSError:
             return False
 
@@ -292,7 +292,7 @@ class Store:
         return 0.0
 
 
-def unpacked_size(packed: bytes) -> int:
+def read_unpacked_size(packed: bytes) -> int:
     """Return the size that a frame of Zstandard says it unpacks to; ValueError if it does not.
 
     RFC 8878, section 3.1.1.1: a descriptor, a byte of window unless all is one segment, an
@@ -313,7 +313,7 @@ def _is_index(text: str) -> bool:
     return text.isascii() and text.isdigit() and len(text) < 12
 
 
-def _locked(lock) -> bool:
+def _try_lock(lock) -> bool:
     """Take a lock that the system gives up with the process, where it has such; else say yes."""
     try:
         import fcntl
@@ -352,7 +352,7 @@ def create(path: Path, campaign: Campaign, runs: int) -> Store:
     shutil.rmtree(part, ignore_errors=True)
     try:
         part.mkdir()
-        _fill(part, campaign, blocks_of(campaign.shape, runs))
+        _fill(part, campaign, choose_blocks(campaign.shape, runs))
         (part / ".lock").touch()
         part.rename(path)
     except BaseException:
@@ -367,7 +367,7 @@ def _fill(path: Path, campaign: Campaign, block: tuple[int, ...]) -> None:
         "softafm_version": softafm.__version__,
         "created": datetime.now(UTC).isoformat(timespec="seconds"),
         "campaign": json.dumps(campaign.identity),
-        "values": json.dumps(_digests(campaign)),
+        "values": json.dumps(_hash_coordinates(campaign)),
         "observables": [observable.name for observable in campaign.observables],
     }
     metadata: dict[str, Any] = {".zgroup": {"zarr_format": 2}, ".zattrs": attributes}
@@ -375,14 +375,16 @@ def _fill(path: Path, campaign: Campaign, block: tuple[int, ...]) -> None:
     for name, (dimensions, values, told) in campaign.coordinates.items():
         array = np.ascontiguousarray(values)
         array = array.astype(array.dtype.newbyteorder("<"))
-        metadata |= _array(name, dimensions, array.shape, array.shape, array.dtype.str, told)
+        metadata |= _describe_array(
+            name, dimensions, array.shape, array.shape, array.dtype.str, told
+        )
         chunks[f"{name}/{'.'.join('0' * array.ndim)}"] = _CODEC.encode(array)
     over = (campaign.dimensions, campaign.shape, block)
     for observable in campaign.observables:
-        metadata |= _observable(observable, *over)
-    metadata |= _array("state", *over, "|u1", _STATE)
+        metadata |= _write_observable(observable, *over)
+    metadata |= _describe_array("state", *over, "|u1", _STATE)
     for name, long_name in _TEXT_ARRAYS.items():
-        metadata |= _array(name, *over, "|O", {"long_name": long_name})
+        metadata |= _describe_array(name, *over, "|O", {"long_name": long_name})
     attributes["coordinates"] = " ".join(campaign.coordinates)
     for key, content in metadata.items():
         file = path / key
@@ -394,9 +396,9 @@ def _fill(path: Path, campaign: Campaign, block: tuple[int, ...]) -> None:
     (path / ".zmetadata").write_text(json.dumps(consolidated), encoding="utf-8")
 
 
-def _observable(observable: Observable, dimensions, shape, block) -> dict[str, Any]:
+def _write_observable(observable: Observable, dimensions, shape, block) -> dict[str, Any]:
     told = {"units": observable.unit, "long_name": observable.long_name}
-    return _array(
+    return _describe_array(
         observable.name,
         (*dimensions, *observable.dimensions),
         (*shape, *observable.shape),
@@ -406,7 +408,9 @@ def _observable(observable: Observable, dimensions, shape, block) -> dict[str, A
     )
 
 
-def _array(name, dimensions, shape, chunks, dtype: str, told: Mapping[str, Any]) -> dict[str, Any]:
+def _describe_array(
+    name, dimensions, shape, chunks, dtype: str, told: Mapping[str, Any]
+) -> dict[str, Any]:
     """Return the metadata of an array, with its attributes."""
     floats = dtype == "<f8"
     return {
@@ -425,7 +429,7 @@ def _array(name, dimensions, shape, chunks, dtype: str, told: Mapping[str, Any])
     }
 
 
-def _digests(campaign: Campaign) -> dict[str, str]:
+def _hash_coordinates(campaign: Campaign) -> dict[str, str]:
     """Return the SHA-256 of the values of every coordinate, by name."""
     return {
         name: sha256(f"{dims} {values.dtype.str} {values.shape}".encode() + values.tobytes())
@@ -434,33 +438,33 @@ def _digests(campaign: Campaign) -> dict[str, str]:
     }  # fmt: skip
 
 
-def differences(store: Store, campaign: Campaign) -> str | None:
+def describe_difference(store: Store, campaign: Campaign) -> str | None:
     """Tell in what a campaign differs from the one that began a store; None if in nothing."""
     begun = json.loads(store.attributes["campaign"])
     ours = json.loads(json.dumps(campaign.identity))
-    found = _difference(begun, ours, "")
+    found = _find_difference(begun, ours, "")
     if found is None and (campaign.dimensions, campaign.shape) != (store.dimensions, store.shape):
-        found = f"it had {_sizes(store.dimensions, store.shape)}, and now "
-        found += _sizes(campaign.dimensions, campaign.shape)
+        found = f"it had {_describe_sizes(store.dimensions, store.shape)}, and now "
+        found += _describe_sizes(campaign.dimensions, campaign.shape)
     values = json.loads(store.attributes["values"])
-    for name, digest in _digests(campaign).items():
+    for name, digest in _hash_coordinates(campaign).items():
         if found is None and values.get(name) != digest:
             found = f"the values of {name} were others"
     return found
 
 
-def _sizes(dimensions: Sequence[str], shape: Sequence[int]) -> str:
+def _describe_sizes(dimensions: Sequence[str], shape: Sequence[int]) -> str:
     return " × ".join(f"{n} of {name}" for name, n in zip(dimensions, shape, strict=True))
 
 
-def _difference(begun: Any, ours: Any, path: str) -> str | None:
+def _find_difference(begun: Any, ours: Any, path: str) -> str | None:
     if isinstance(begun, dict) and isinstance(ours, dict):
         for key in {**begun, **ours}:
             name = f"{path}.{key}" if path else key
             if key not in begun or key not in ours:
                 there = "is new" if key in ours else "is missing"
                 return f"{name} {there}"
-            if (found := _difference(begun[key], ours[key], name)) is not None:
+            if (found := _find_difference(begun[key], ours[key], name)) is not None:
                 return found
         return None
     return None if begun == ours else f"{path} is {shown(ours)}, and was {shown(begun)}"

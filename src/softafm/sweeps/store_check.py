@@ -43,20 +43,20 @@ def read_metadata(path: Path) -> Metadata:
         If it is no store of a sweep, is damaged, or is such as no sweep writes.
     """
     try:
-        return _metadata(path)
+        return _collect_metadata(path)
     except StoreError as error:
         raise StoreError(f"{path}: {error}") from None
     except (OSError, ValueError, KeyError, TypeError, AttributeError, RecursionError):
         raise StoreError(f"{path}: is no store of a sweep, or damaged") from None
 
 
-def _metadata(path: Path) -> Metadata:
+def _collect_metadata(path: Path) -> Metadata:
     if not path.exists():
         raise StoreError("no such store")
     if not all((path / name).is_file() for name in (".zattrs", ".zmetadata")):
         raise StoreError("is no store of a sweep")
-    attributes = _json(path / ".zattrs")
-    found = _json(path / ".zmetadata")["metadata"]
+    attributes = _read_json(path / ".zattrs")
+    found = _read_json(path / ".zmetadata")["metadata"]
     if attributes["format"] != FORMAT:
         raise StoreError("is no store of a sweep")
     arrays = {key[:-8]: each for key, each in found.items() if key.endswith("/.zarray")}
@@ -66,7 +66,7 @@ def _metadata(path: Path) -> Metadata:
     return Metadata(attributes, arrays, told)
 
 
-def _json(file: Path) -> dict[str, Any]:
+def _read_json(file: Path) -> dict[str, Any]:
     if file.stat().st_size > _LARGEST_TEXT:
         raise StoreError(f"{file.name} has more than {_LARGEST_TEXT / 1e6:g} MB")
     found = json.loads(file.read_text(encoding="utf-8"))
@@ -86,7 +86,7 @@ def _refuse(
     for name, array in arrays.items():
         _refuse_array(name, array, told[name])
     shape, block = arrays["state"]["shape"], arrays["state"]["chunks"]
-    runs, blocks = prod(shape), prod(map(_blocks, shape, block))
+    runs, blocks = prod(shape), prod(map(_count_blocks, shape, block))
     if not shape or not 0 < runs <= _MOST_RUNS or blocks > _MOST_BLOCKS:
         raise StoreError(f"is of an absurd shape, {shape}")
     if prod(block) > _MOST_IN_BLOCK:
@@ -105,7 +105,7 @@ def _refuse(
             raise StoreError(f"its coordinate '{name}' is in parts")
 
 
-def _blocks(size: int, block: int) -> int:
+def _count_blocks(size: int, block: int) -> int:
     return ceil(size / block)
 
 

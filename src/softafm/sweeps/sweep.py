@@ -15,11 +15,11 @@ from softafm.experiment.config import load_document, set_value
 from softafm.progress import Progress, reporting
 from softafm.sweeps.block import FAILED, Block, Work
 from softafm.sweeps.campaign import Campaign
-from softafm.sweeps.execution import Halted, carry_out, cores
+from softafm.sweeps.execution import Halted, carry_out, count_cores
 from softafm.sweeps.extra import require
-from softafm.sweeps.progress import in_words
-from softafm.sweeps.reading import Table, campaign_of, table_of
-from softafm.sweeps.store import RESERVED, Busy, Store, StoreError, create, differences
+from softafm.sweeps.progress import describe_duration
+from softafm.sweeps.reading import Table, make_campaign, read_table
+from softafm.sweeps.store import RESERVED, Busy, Store, StoreError, create, describe_difference
 
 if TYPE_CHECKING:
     from xarray import Dataset
@@ -106,21 +106,23 @@ def sweep(
         document, folder = load_document(what), Path(what).parent
     else:
         document, folder = (deepcopy(dict(what)) if isinstance(what, Mapping) else {}), Path()
-    table = given.over(table_of(document.pop("sweep", {})))
-    campaign = campaign_of(what if callable(what) else document, folder, table, given.vary is None)
+    table = given.over(read_table(document.pop("sweep", {})))
+    campaign = make_campaign(
+        what if callable(what) else document, folder, table, given.vary is None
+    )
     options: dict[str, Any] = {"batch": table.batch, "scheduler": scheduler, "workers": workers}
     refuse_size(campaign, scheduler, workers, yes)
     if store is not None:
         kept = conduct(campaign, store, resume=resume, force=force, progress=progress, **options)
-        return opened(kept)
+        return open_store(kept)
     with tempfile.TemporaryDirectory(prefix="softafm-") as place:
         kept = conduct(campaign, Path(place) / "sweep.zarr", progress=progress, **options)
-        return opened(kept).load()
+        return open_store(kept).load()
 
 
 def refuse_size(campaign: Campaign, scheduler: str | None, workers: int | None, yes: bool) -> None:
     """Raise ConfigError if a campaign is absurdly large, unless ``yes``."""
-    hands = cores() if workers is None else max(1, workers)
+    hands = count_cores() if workers is None else max(1, workers)
     seconds = (campaign.seconds or 0.0) * campaign.size
     duration = seconds if scheduler is not None else seconds / hands
     if yes or (campaign.size <= _MOST_RUNS and duration <= _LONGEST):
@@ -131,13 +133,13 @@ def refuse_size(campaign: Campaign, scheduler: str | None, workers: int | None, 
     )
     raise ConfigError(
         [
-            f"sweep: {campaign.size} runs ({sizes}), about {in_words(duration)} {where}: take "
-            "fewer, or add --yes (in Python yes=True) if that is meant"
+            f"sweep: {campaign.size} runs ({sizes}), about {describe_duration(duration)} {where}: "
+            "take fewer, or add --yes (in Python yes=True) if that is meant"
         ]
     )
 
 
-def planned(path: str | Path, overrides: Sequence[str]) -> tuple[Campaign, int | None]:
+def plan(path: str | Path, overrides: Sequence[str]) -> tuple[Campaign, int | None]:
     """Read a campaign file, with values replaced; return the campaign and its runs a block.
 
     Raises
@@ -148,8 +150,8 @@ def planned(path: str | Path, overrides: Sequence[str]) -> tuple[Campaign, int |
     document = load_document(path)
     for override in overrides:
         set_value(document, override)
-    table = table_of(document.pop("sweep", {}))
-    return campaign_of(document, Path(path).parent, table, from_file=True), table.batch
+    table = read_table(document.pop("sweep", {}))
+    return make_campaign(document, Path(path).parent, table, from_file=True), table.batch
 
 
 def conduct(
@@ -167,7 +169,7 @@ def conduct(
 
     Parameters and errors are those of ``sweep``.
     """
-    store = prepared(
+    store = prepare(
         campaign, path, batch=batch, scheduler=scheduler, workers=workers, resume=resume,
         force=force,
     )  # fmt: skip
@@ -175,7 +177,7 @@ def conduct(
     return store
 
 
-def prepared(
+def prepare(
     campaign: Campaign,
     path: str | Path,
     *,
@@ -199,7 +201,7 @@ def prepared(
     for name in (*(o.name for o in campaign.observables), *campaign.coordinates):
         if name in RESERVED:
             raise ConfigError([f"'{name}': is a name that every store uses; choose another"])
-    return _store(campaign, Path(path), batch, resume, force)
+    return _find_store(campaign, Path(path), batch, resume, force)
 
 
 def finish(
@@ -225,7 +227,7 @@ def finish(
                 ready = store.size - left + done
                 seconds = (time() - begun) / done * (left - done)
                 told = f"{ready} of {store.size} runs" + (f", {failed} failed" if failed else "")
-                report(ready / store.size, f"{told}, {in_words(seconds)} left")
+                report(ready / store.size, f"{told}, {describe_duration(seconds)} left")
 
         if missing and report is not None:
             report(1 - left / store.size, "workers start")
@@ -235,12 +237,14 @@ def finish(
             carry_out(work, blocks, keep, scheduler=scheduler, workers=workers)
 
 
-def _store(campaign: Campaign, path: Path, batch: int | None, resume: bool, force: bool) -> Store:
+def _find_store(
+    campaign: Campaign, path: Path, batch: int | None, resume: bool, force: bool
+) -> Store:
     """Return the store to be filled: a new one, or one that this campaign began."""
     there = path.exists() or path.is_symlink()
     if there and resume:
         store = Store(path)
-        difference = differences(store, campaign)
+        difference = describe_difference(store, campaign)
         if difference is not None:
             raise StoreError(f"{path}: was begun by another campaign: {difference}")
         return store
@@ -252,16 +256,16 @@ def _store(campaign: Campaign, path: Path, batch: int | None, resume: bool, forc
     if there:
         with Store(path).writing():  # refuses what is no store, or in use
             shutil.rmtree(path)
-    return create(path, campaign, batch or _batch(campaign))
+    return create(path, campaign, batch or _choose_batch(campaign))
 
 
-def _batch(campaign: Campaign) -> int:
+def _choose_batch(campaign: Campaign) -> int:
     """Return how many runs to give a worker at a time."""
     runs = _WORK / max(campaign.seconds or 0.0, _WORK / _MOST_IN_BLOCK)
     return max(1, min(int(runs), -(-campaign.size // _FEWEST_BLOCKS)))
 
 
-def opened(store: Store) -> "Dataset":
+def open_store(store: Store) -> "Dataset":
     """Return a store as a dataset that reads values as they are needed."""
     from xarray import open_zarr
 
@@ -289,4 +293,4 @@ def load_sweep(path: str | Path) -> "Dataset":
         raise StoreError(f"{path}: is damaged ({error})") from None
 
 
-__all__ = ["Busy", "Halted", "conduct", "finish", "load_sweep", "planned", "prepared", "sweep"]
+__all__ = ["Busy", "Halted", "conduct", "finish", "load_sweep", "plan", "prepare", "sweep"]

@@ -5,7 +5,7 @@ from math import degrees, pi
 from softafm.checks.validate import finite
 
 
-def half_angle_of(value: float) -> float:
+def check_half_angle(value: float) -> float:
     """Return the half angle of a cone, rad, if it lies between 0 and π/2."""
     angle = finite("half_angle", value, "rad")
     if not 0 < angle < pi / 2:

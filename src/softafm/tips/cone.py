@@ -5,7 +5,7 @@ from typing import ClassVar
 
 from softafm.checks.validate import positive
 from softafm.compiled.formulas import Term
-from softafm.tips.angles import half_angle_of
+from softafm.tips.angles import check_half_angle
 from softafm.tips.arc import arc_and_flank, flank
 from softafm.tips.tip import Tip
 
@@ -37,7 +37,7 @@ class Cone(Tip):
     apex_radius: float
 
     def __post_init__(self):
-        object.__setattr__(self, "half_angle", half_angle_of(self.half_angle))
+        object.__setattr__(self, "half_angle", check_half_angle(self.half_angle))
         object.__setattr__(self, "apex_radius", positive("apex_radius", self.apex_radius, "m"))
 
     @property

@@ -7,7 +7,7 @@ from typing import ClassVar
 
 import numpy as np
 
-from softafm.compiled.formulas import Term, bound_parameters, first_line
+from softafm.compiled.formulas import Term, bound_parameters, find_first_line
 from softafm.tips.tip import Tip
 
 _RADII = np.geomspace(1e-13, 1e-2, 1101)
@@ -71,7 +71,7 @@ class CustomTip(Tip):
         except Exception as error:  # numba raises many types
             raise ValueError(
                 f"function = {name}: must be one that numba compiles and that has a value at any "
-                f"radius: {first_line(error)}"
+                f"radius: {find_first_line(error)}"
             ) from error
         r = np.append(0.0, _RADII)
         for i in np.flatnonzero(~np.isfinite(height)):

@@ -8,8 +8,8 @@ import numpy as np
 
 from softafm.checks.validate import positive
 from softafm.compiled.formulas import Term
-from softafm.tips.angles import half_angle_of
-from softafm.tips.tip import Tip, height_of
+from softafm.tips.angles import check_half_angle
+from softafm.tips.tip import Tip, check_height
 
 
 @dataclass(frozen=True)
@@ -39,7 +39,7 @@ class Hyperboloid(Tip):
 
     def __post_init__(self):
         object.__setattr__(self, "radius", positive("radius", self.radius, "m"))
-        object.__setattr__(self, "half_angle", half_angle_of(self.half_angle))
+        object.__setattr__(self, "half_angle", check_half_angle(self.half_angle))
 
     @property
     def term(self) -> Term:
@@ -48,7 +48,7 @@ class Hyperboloid(Tip):
 
     def radius_at(self, height: float) -> float:
         """Radius at which the profile reaches ``height`` (m), m."""
-        height = height_of(height)
+        height = check_height(height)
         return sqrt(height * (2 * self.radius + height * tan(self.half_angle) ** 2))
 
 

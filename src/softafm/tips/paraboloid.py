@@ -6,7 +6,7 @@ from typing import ClassVar
 
 from softafm.checks.validate import positive
 from softafm.compiled.formulas import Term
-from softafm.tips.tip import Tip, height_of
+from softafm.tips.tip import Tip, check_height
 
 
 @dataclass(frozen=True)
@@ -41,7 +41,7 @@ class Paraboloid(Tip):
 
     def radius_at(self, height: float) -> float:
         """Radius at which the profile reaches ``height`` (m), m."""
-        return sqrt(2 * self.radius * height_of(height))
+        return sqrt(2 * self.radius * check_height(height))
 
 
 def _height(r, R):

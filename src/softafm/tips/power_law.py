@@ -5,7 +5,7 @@ from typing import ClassVar
 
 from softafm.checks.validate import finite, positive
 from softafm.compiled.formulas import Term
-from softafm.tips.tip import Tip, height_of
+from softafm.tips.tip import Tip, check_height
 
 _LARGEST = 50.0
 
@@ -62,7 +62,7 @@ class PowerLawTip(Tip):
 
     def radius_at(self, height: float) -> float:
         """Radius at which the profile reaches ``height`` (m), m."""
-        return self.radius * (height_of(height) / self.height) ** (1 / self.exponent)
+        return self.radius * (check_height(height) / self.height) ** (1 / self.exponent)
 
 
 def _height(r, n, height, radius):

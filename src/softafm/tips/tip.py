@@ -65,7 +65,7 @@ class Tip(ABC):
         ValueError
             If the height is negative or not finite, or the profile never gets above it.
         """
-        height = height_of(height)
+        height = check_height(height)
         low, high = 0.0, max(height, _FIRST_RADIUS)
         for _ in range(_MOST_DOUBLINGS):
             if self.profile(high) > height:
@@ -82,12 +82,12 @@ class Tip(ABC):
     @property
     def compiled_profile(self):
         """The profile compiled for solvers, and its parameters (see ``softafm.compiled``)."""
-        from softafm.compiled.functions import profile_function
+        from softafm.compiled.functions import compile_profile
 
-        return profile_function(self.term.shape), np.array(self.term.packed)
+        return compile_profile(self.term.shape), np.array(self.term.packed)
 
 
-def height_of(value: float) -> float:
+def check_height(value: float) -> float:
     """Return a height above the apex (m) if it is a finite number that is not negative."""
     height = finite("height", value, "m")
     if height < 0:

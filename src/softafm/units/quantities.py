@@ -54,28 +54,28 @@ STIFFNESS = Kind("a stiffness", "N/m", "28 N/m")
 
 
 @cache
-def _si_factor(unit: str, kind: Kind) -> Decimal:
+def _find_si_factor(unit: str, kind: Kind) -> Decimal:
     """Return how many SI units of ``kind`` one ``unit`` is; ValueError if it is of another kind."""
     plain, si = plain_units.parse(unit), plain_units.parse(kind.si)
     assert si is not None
     if plain is None:
-        return _si_factor_by_pint(unit, kind)
+        return _ask_pint(unit, kind)
     if plain.roots != si.roots:
-        raise _of_another_kind(unit, kind)
+        raise _refuse_kind(unit, kind)
     return plain.factor / si.factor
 
 
 @cache
-def _registry():
+def _build_registry():
     """Build pint's registry once, when a unit is read that is not plain: it takes half a second."""
     import pint
 
     return pint.UnitRegistry()
 
 
-def _si_factor_by_pint(unit: str, kind: Kind) -> Decimal:
-    """Return what ``_si_factor`` does, of any unit that pint knows."""
-    registry = _registry()
+def _ask_pint(unit: str, kind: Kind) -> Decimal:
+    """Return what ``_find_si_factor`` does, of any unit that pint knows."""
+    registry = _build_registry()
     try:
         parsed = registry.parse_units(unit)
         factor, root = registry.get_root_units(parsed)
@@ -89,11 +89,11 @@ def _si_factor_by_pint(unit: str, kind: Kind) -> Decimal:
     si_factor, si_root = registry.get_root_units(registry.parse_units(kind.si))
     # Roots, not dimensions: pint calls rad/s a frequency, and would lose a factor 2π in silence.
     if root != si_root:
-        raise _of_another_kind(unit, kind)
+        raise _refuse_kind(unit, kind)
     return Decimal(f"{factor / si_factor:.15g}")
 
 
-def _of_another_kind(unit: str, kind: Kind) -> ValueError:
+def _refuse_kind(unit: str, kind: Kind) -> ValueError:
     return ValueError(f"must be {kind.valid}; '{unit}' does not measure {kind.noun}")
 
 
@@ -104,7 +104,7 @@ def is_unit(text: str) -> bool:
     if plain_units.parse(text) is not None:
         return True
     try:
-        return not _registry().parse_units(text).dimensionless
+        return not _build_registry().parse_units(text).dimensionless
     except Exception:  # as above
         return False
 
@@ -144,7 +144,7 @@ def _read(text: str, kind: Kind) -> float:
         raise ValueError(f"must be {kind.valid}; the unit is missing")
     if len(unit) > _LONGEST_UNIT or not plain_units.PATTERN.fullmatch(unit):
         raise ValueError(f"must be {kind.valid}")
-    factor = _si_factor("1" + unit if unit.startswith("/") else unit, kind)
+    factor = _find_si_factor("1" + unit if unit.startswith("/") else unit, kind)
     if not isfinite(float(number[0])):
         raise ValueError(f"must be finite: {kind.valid}")
     value = float(Decimal(number[0]) * factor) if abs(float(number[0])) < LARGEST else inf
@@ -155,7 +155,7 @@ def _read(text: str, kind: Kind) -> float:
     return value
 
 
-def readable(value: float, unit: str) -> str:
+def write_quantity(value: float, unit: str) -> str:
     """Return a value with four digits and a sensible SI prefix, such as ``"-8.609 nN"``."""
     if unit not in _PREFIXED or value == 0 or not isfinite(value):
         return f"{value:.4g} {unit}".removesuffix(" 1").strip()
@@ -165,7 +165,7 @@ def readable(value: float, unit: str) -> str:
     return f"{rounded / 10.0**exponent:.4g} {_PREFIXES[exponent]}{unit}"
 
 
-def prefixed(largest: float, unit: str) -> tuple[float, str]:
+def choose_prefix(largest: float, unit: str) -> tuple[float, str]:
     """Return the factor from SI to the prefix that suits a magnitude, and the prefixed unit."""
     exponent = 3 * floor(log10(largest) / 3 + 1e-12) if largest > 0 else 0
     exponent = min(max(exponent, min(_PREFIXES)), max(_PREFIXES))

@@ -20,33 +20,33 @@ def respell(text: str, si: str) -> list[str]:
 
     An ambiguous one gives several, such as a comma that may group thousands; most give none.
     """
-    joined = _joined(text)
+    joined = _join_thousands(text)
     number = _NUMBER.match(joined) if len(text) <= _LONGEST else None
     if number is None:
         return []
-    units = _units(joined[number.end() :].strip(_AROUND), si)
-    found = [f"{value} {unit}" for value in _numbers(*number.groups()) for unit in units]
+    units = _respell_unit(joined[number.end() :].strip(_AROUND), si)
+    found = [f"{value} {unit}" for value in _respell_digits(*number.groups()) for unit in units]
     return [spelling for spelling in found if spelling != text]
 
 
 def respell_number(text: str) -> list[str]:
     """Return plain numbers that are written nearly as ``text``, such as 0.49 for ``"0,49"``."""
-    number = _NUMBER.fullmatch(_joined(text)) if len(text) <= _LONGEST else None
+    number = _NUMBER.fullmatch(_join_thousands(text)) if len(text) <= _LONGEST else None
     if number is None:
         return []
     # As TOML has them: with digits on both sides of the point.
-    found = [re.sub(r"^([+-]?)\.", r"\g<1>0.", each) for each in _numbers(*number.groups())]
+    found = [re.sub(r"^([+-]?)\.", r"\g<1>0.", each) for each in _respell_digits(*number.groups())]
     found = [re.sub(r"\.(?=e|$)", "", each) for each in found]
     return [spelling for spelling in found if spelling != text]
 
 
-def _joined(text: str) -> str:
+def _join_thousands(text: str) -> str:
     """Return a text without the spaces that group the thousands of its number."""
     grouped = re.match(r"[+\-−]?\d{1,3}(?: \d{3})+(?!\d)", text)
     return text if grouped is None else grouped[0].replace(" ", "") + text[grouped.end() :]
 
 
-def _numbers(digits: str, power: str | None, exponent: str | None) -> list[str]:
+def _respell_digits(digits: str, power: str | None, exponent: str | None) -> list[str]:
     """Return a number with a decimal point in place of a comma, and an exponent after an e."""
     digits = digits.replace("−", "-")
     end = (f"e{int(power.replace('−', '-'))}" if power else exponent or "").replace("−", "-")
@@ -61,7 +61,7 @@ def _numbers(digits: str, power: str | None, exponent: str | None) -> list[str]:
     return [reading + end for reading in readings]
 
 
-def _units(unit: str, si: str) -> list[str]:
+def _respell_unit(unit: str, si: str) -> list[str]:
     """Return the units like ``unit`` that measure what ``si`` does: of its own case if any is."""
     tidy = re.sub(rf"(?<={SYMBOL[:-1]})(-?\d)", r"^\1", unit.translate(_SIGNS))
     shapes = [
@@ -69,14 +69,14 @@ def _units(unit: str, si: str) -> list[str]:
         tidy.replace(" ", ""),
         re.sub(r"(?<=\w)(s)$", r" \1", tidy, flags=re.IGNORECASE),
     ]
-    for spellings in (shapes, [cased for shape in shapes for cased in _cases(shape)]):
+    for spellings in (shapes, [cased for shape in shapes for cased in _list_cases(shape)]):
         fitting = [spelling for spelling in spellings if _measures(spelling, si)]
         if fitting:
             return list(dict.fromkeys(fitting))
     return []
 
 
-def _cases(unit: str) -> Iterator[str]:
+def _list_cases(unit: str) -> Iterator[str]:
     """Yield the unit with its symbols in all cases in which they are known."""
     parts = re.split(f"({SYMBOL})", unit)
     choices = [_BY_CASELESS.get(part.casefold(), [part]) for part in parts]

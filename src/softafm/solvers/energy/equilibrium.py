@@ -14,7 +14,7 @@ from math import inf, pi
 from numba import float64, int64
 
 from softafm.compiled.dense import factorise, multiply, solve_factorised
-from softafm.compiled.functions import POTENTIAL, PRESSURE, PROFILE, compile_for, pointer
+from softafm.compiled.functions import POTENTIAL, PRESSURE, PROFILE, compile_for, inlined, pointer
 from softafm.solvers.energy.layout import CLOCK, MATRIX, MESH, ROOM, VECTOR
 from softafm.solvers.energy.tuning import (
     FARTHEST_GUESS,
@@ -64,6 +64,43 @@ def beyond_mesh(gap, rise, mesh, law, parameters, work):
     return force, stiffness
 
 
+@inlined
+def _fall_of_energy(u, v, scale, mesh, pressure, change):
+    """Write minus the gradient of Π/(2πa²) into ``change``, its last entry without the lever."""
+    n = pressure.size
+    for i in range(n):
+        u[i] -= v[i]
+    multiply(mesh.stiffness, u[:n], change[:n])
+    change[n] = 0.0
+    for i in range(n):
+        u[i] += v[i]
+        push = mesh.masses[i] * pressure[i]
+        change[i] = -(change[i] * scale + push)
+        change[n] += push
+
+
+@inlined
+def _move_surface(u, change, standoff, gap, pressure, slope):
+    """Add a change to the shape and the deflection, and to first order to the pressure."""
+    n = pressure.size
+    u[n] += change[n]
+    for i in range(n):
+        u[i] += change[i]
+        gap[i] = standoff[i] + u[n] - u[i]
+    for i in range(n):
+        pressure[i] += slope[i] * (change[n] - change[i])
+
+
+@inlined
+def _missed_force(mesh, exact, pressure):
+    """Sums over the mesh of |exact − pressure| and |exact|."""
+    missed, whole = 0.0, 0.0
+    for i in range(pressure.size):
+        missed += mesh.masses[i] * abs(exact[i] - pressure[i])
+        whole += mesh.masses[i] * abs(exact[i])
+    return missed, whole
+
+
 @compile_for(
     int64(
         VECTOR, VECTOR, float64, VECTOR, float64, float64, VECTOR,
@@ -93,15 +130,7 @@ def equilibrate(
     previous = FARTHEST_GUESS
     for iteration in range(1, MOST_ITERATIONS + 1):
         law(gap, parameters, pressure, slope, n)
-        for i in range(n):
-            u[i] -= v[i]
-        multiply(mesh.stiffness, u[:n], change[:n])
-        change[n] = 0.0
-        for i in range(n):
-            u[i] += v[i]
-            push = mesh.masses[i] * pressure[i]
-            change[i] = -(change[i] * scale + push)
-            change[n] += push
+        _fall_of_energy(u, v, scale, mesh, pressure, change)
         border = lever
         if size > n:
             tail, draw = beyond_mesh(gap[n - 1], rise, mesh, law, parameters, far_work)
@@ -118,27 +147,71 @@ def equilibrate(
             largest = max(largest, abs(change[i] - change[n]) / gap[i])
         if not largest < previous:
             return -iteration
-        u[n] += change[n]
-        for i in range(n):
-            u[i] += change[i]
-            gap[i] = standoff[i] + u[n] - u[i]
-        for i in range(n):
-            pressure[i] += slope[i] * (change[n] - change[i])
+        _move_surface(u, change, standoff, gap, pressure, slope)
         if iteration == 2 and clock.contraction < inf:
             clock.contraction = largest / (previous * previous)
         if largest < accuracy:
             return iteration
         if iteration == 1 and 0.0 < clock.contraction * largest * largest < TRUSTED * accuracy:
             law(gap, parameters, change, slope, n)
-            missed, whole = 0.0, 0.0
-            for i in range(n):
-                missed += mesh.masses[i] * abs(change[i] - pressure[i])
-                whole += mesh.masses[i] * abs(change[i])
+            missed, whole = _missed_force(mesh, change, pressure)
             if missed < TRUSTED * accuracy * whole:
                 clock.contraction *= FORGOTTEN
                 return 1
         previous = largest
     return -MOST_ITERATIONS
+
+
+@inlined
+def _find_way_down(
+    gradient, gap, mesh, scale, slope, shift, border, steepest, size, hessian, change
+):  # fmt: skip
+    """Shift the Hessian until it is positive and no gap changes too much; the step in ``change``.
+
+    Returns the shift, the largest relative change of a gap, and the slope of Π along the step.
+    """
+    n = slope.size
+    while True:
+        for i in range(size):
+            change[i] = -gradient[i]
+        _assemble(mesh, scale, slope, shift, border, hessian)
+        if factorise(hessian, size):
+            solve_factorised(hessian, change, size)
+            if size == n:
+                change[n] = 0.0
+            largest, downhill = 0.0, change[n] * gradient[n]
+            for i in range(n):
+                largest = max(largest, abs(change[i] - change[n]) / gap[i])
+                downhill += change[i] * gradient[i]
+            if largest < LARGEST_DESCENT:
+                break
+        shift = max(8.0 * shift, 1e-10 * steepest)
+    return shift, largest, downhill
+
+
+@inlined
+def _search_line(
+    u, v, change, value, downhill, standoff, lever, tail, mesh, scale, potential, parameters, rows
+):  # fmt: skip
+    """Part of a step that lowers Π far enough below its ``value``."""
+    n = standoff.size
+    gap, density, trial, strain = rows[0, :n], rows[3, :n], rows[6, :n], rows[7, :n]
+    length = 1.0
+    while length > 1e-8:
+        q = u[n] + length * change[n]
+        for i in range(n):
+            trial[i] = u[i] + length * change[i]
+            gap[i] = standoff[i] + q - trial[i]
+            trial[i] -= v[i]
+        potential(gap, parameters, density, n)
+        multiply(mesh.stiffness, trial, strain)
+        lower = 0.5 * lever * q * q - tail * q
+        for i in range(n):
+            lower += 0.5 * trial[i] * strain[i] * scale + mesh.masses[i] * density[i]
+        if lower <= value + SUFFICIENT * length * downhill + 1e-14 * abs(value):
+            break
+        length *= 0.5
+    return length
 
 
 @compile_for(
@@ -180,40 +253,17 @@ def descend(u, v, ac, standoff, lever, rise, mesh, law, potential, parameters, a
             gradient[i] = strain[i] * scale + push
             gradient[n] -= push
             steepest = max(steepest, abs(slope[i]))
-        while True:
-            for i in range(size):
-                change[i] = -gradient[i]
-            _assemble(mesh, scale, slope, shift, border, hessian)
-            if factorise(hessian, size):
-                solve_factorised(hessian, change, size)
-                if size == n:
-                    change[n] = 0.0
-                largest, downhill = 0.0, change[n] * gradient[n]
-                for i in range(n):
-                    largest = max(largest, abs(change[i] - change[n]) / gap[i])
-                    downhill += change[i] * gradient[i]
-                if largest < LARGEST_DESCENT:
-                    break
-            shift = max(8.0 * shift, 1e-10 * steepest)
+        shift, largest, downhill = _find_way_down(
+            gradient, gap, mesh, scale, slope, shift, border, steepest, size, hessian, change
+        )
         if shift == 0.0 and largest < accuracy:
             for i in range(n + 1):
                 u[i] += change[i]
             return iteration
-        length = 1.0
-        while length > 1e-8:
-            q = u[n] + length * change[n]
-            for i in range(n):
-                trial[i] = u[i] + length * change[i]
-                gap[i] = standoff[i] + q - trial[i]
-                trial[i] -= v[i]
-            potential(gap, parameters, density, n)
-            multiply(mesh.stiffness, trial, strain)
-            lower = 0.5 * lever * q * q - tail * q
-            for i in range(n):
-                lower += 0.5 * trial[i] * strain[i] * scale + mesh.masses[i] * density[i]
-            if lower <= value + SUFFICIENT * length * downhill + 1e-14 * abs(value):
-                break
-            length *= 0.5
+        length = _search_line(
+            u, v, change, value, downhill, standoff, lever, tail, mesh, scale, potential,
+            parameters, rows,
+        )  # fmt: skip
         for i in range(n + 1):
             u[i] += length * change[i]
         shift = 0.25 * shift if shift > 4e-10 * steepest else 0.0
@@ -228,6 +278,15 @@ def tip_force(pressure, gap, rise, mesh, frame, law, parameters, far_work):
     for i in range(n):
         total += mesh.masses[i] * pressure[i]
     return 2.0 * pi * frame * frame * total
+
+
+@compile_for(float64(float64, float64), fastmath=False)
+def spring_constant(stiffness, frame):
+    """Stiffness of a lever, N/m, in units of Π/q² of a frame; 0 if it holds the tip still.
+
+    Rounded as it stands, whatever code it is compiled into.
+    """
+    return stiffness / (2.0 * pi * frame * frame) if stiffness < inf else 0.0
 
 
 @compile_for((pointer(PROFILE), VECTOR, MESH, float64, VECTOR, VECTOR, VECTOR))

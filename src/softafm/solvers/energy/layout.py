@@ -12,6 +12,7 @@ import numpy as np
 from numba import float64, from_dtype, types
 
 from softafm.bodies.mesh import UnitMesh
+from softafm.compiled.functions import CompiledFunction
 
 VECTOR = float64[::1]
 MATRIX = float64[:, ::1]
@@ -102,11 +103,20 @@ class Table(NamedTuple):
     found: np.ndarray
 
 
-class Parameters(NamedTuple):
-    """Parameters of height, tip profile and surface law; J_g, J_1, ... in 1/Pa; τ_1, ... in s.
+class Functions(NamedTuple):
+    """Compiled functions of one run: see ``softafm.compiled.functions``."""
 
-    ``lever`` holds its stiffness, N/m, 0 for a rigid one, and the time in which it relaxes, s.
-    """
+    height: CompiledFunction
+    profile: CompiledFunction
+    pressure: CompiledFunction
+    respond: CompiledFunction
+    accept_force: CompiledFunction
+    potential: CompiledFunction
+
+
+class Parameters(NamedTuple):
+    """Parameters of height, tip profile and surface law; J_g, J_1, ... in 1/Pa; τ_1, ... in s; and
+    those of the lever."""
 
     height: np.ndarray
     tip: np.ndarray

@@ -8,6 +8,7 @@ import numpy as np
 
 from softafm.errors import AccuracyWarning, DivergedError
 from softafm.instrument.compiled_motions import still
+from softafm.instrument.motion import bound_speed, count_periods, find_setpoint
 from softafm.solvers.energy.layout import (
     DEFORMATION,
     FALL,
@@ -39,11 +40,11 @@ _SLACKEST = 18.0
 class Run:
     """Carries a surface through a motion and keeps what happens."""
 
-    def __init__(self, solver, contact, motion, stiffness, tolerance: float, keep_shapes: bool):
+    def __init__(self, solver, contact, motion, lever, tolerance: float, keep_shapes: bool):
         self.solver, self.contact = solver, contact
         self._follow(motion)
         self.strictness = tolerance / 1e-2
-        self.surface = Surface(contact, motion, stiffness, self.strictness, solver.finest_spacing)
+        self.surface = Surface(contact, motion, lever, self.strictness, solver.finest_spacing)
         gap = self.surface.edge_gap
         fastest = min([gap / motion.top_speed, *self.surface.parameters.retardation])
         self.controls = Controls(
@@ -151,20 +152,19 @@ class Run:
 
     def _trigger(self, stop) -> float:
         """Return the force that turns the ramp before ``stop``, N."""
-        force = getattr(self.motion, "setpoint_force", None)
+        force = find_setpoint(self.motion)
         return np.inf if force is None or stop > self.breaks[1] else force
 
     def _top_speed(self, stop) -> float:
-        """Return how fast the motion gets until ``stop``, m/s, if it tells."""
-        between = getattr(self.motion, "top_speed_between", None)
-        return self.motion.top_speed if between is None else between(self.surface.time, stop)
+        """Return how fast the motion gets until ``stop``, m/s."""
+        return bound_speed(self.motion, self.surface.time, stop)
 
     def _turn(self):
         """Let the ramp turn now, its force having been reached."""
         surface = self.surface
         self._follow(self.motion.turned_at(surface.time))
         height, parameters = self.motion.compiled_height
-        surface.functions = (height, *surface.functions[1:])
+        surface.functions = surface.functions._replace(height=height)
         surface.parameters = surface.parameters._replace(height=parameters)
         surface.clock["time"] = self.breaks[1]
         self.records[self.count - 1]["time"] = surface.time
@@ -183,8 +183,9 @@ class Run:
         records = self._free_records()
         shapes = np.empty((0 if self.shapes is None else _CHUNK, surface.mesh.nodes.size))
         outcome, count = advance(
-            *surface.functions[:3], surface.parameters, surface.background, surface.mesh,
-            surface.table, controls, surface.fields, surface.clock, records, shapes, surface.room(),
+            *surface.functions[:-1], surface.parameters, surface.background, surface.mesh,
+            surface.table, controls, surface.fields, surface.clock, surface.lever_state, records,
+            shapes, surface.room(),
         )  # fmt: skip
         if outcome == TABULATE:
             surface.tabulate(float(surface.clock["wanted"]))
@@ -208,7 +209,7 @@ class Run:
     def _fall(self, stop):
         """Pass a short step where no stable shape is near, and note a jump if it is one."""
         surface, clock = self.surface, self.surface.clock
-        start, gap, edge = surface.time, clock["axis_gap"], clock["edge"]
+        start, gap, edge, force = surface.time, clock["axis_gap"], clock["edge"], clock["force"]
         before = surface.energy()
         # A slack contact may slip from node to node: pass such a stretch in growing steps.
         self.slips = min(self.slips + 1, 8) if start < self.end_of_slip else 0
@@ -216,6 +217,9 @@ class Run:
         end = stop if duration == stop - start else start + duration
         self.end_of_slip = start + 20 * duration
         self._creep_down(end, duration)
+        surface.functions.accept_force(
+            end, duration, force, force, surface.parameters.lever, surface.lever_state
+        )
         clock["time"], clock["step"] = end, 10 * self.controls.shortest_step
         self._settle()
         self.falls.append(surface.time)
@@ -235,25 +239,27 @@ class Run:
         steps is left to the descent in energy that follows.
         """
         surface, clock, controls = self.surface, self.surface.clock, self.controls
-        functions, parameters, background = (
-            surface.functions, surface.parameters, surface.background
+        functions, parameters, background, lever, state = (
+            surface.functions, surface.parameters, surface.background, surface.lever,
+            surface.lever_state,
         )  # fmt: skip
         instantaneous, modes = parameters.compliance[0], parameters.compliance[1:]
         tabor = self.contact.tabor_instantaneous
         stiff = instantaneous * min(0.2, (0.4 / tabor) ** 1.5 if tabor else 0.2)
         delayed = instantaneous - stiff
-        surface.functions = (still, *functions[1:])
+        surface.functions = functions._replace(height=still)
         # The clock of the fall starts at 0; the past goes on fading from where it is.
         surface.background = background._replace(since=background.since - time)
         surface.fields = np.vstack([surface.fields, surface.fields[LOAD]])
         for patience in range(8):
             creep_time = 10.0 ** (-4 - patience) * duration
             surface.parameters = parameters._replace(
-                height=np.array([functions[0](time, parameters.height)]),
+                height=np.array([functions.height(time, parameters.height)]),
                 compliance=np.concatenate([[stiff], modes, [delayed]]),
                 retardation=np.append(parameters.retardation, creep_time),
-                lever=np.array([parameters.lever[0], creep_time]),
             )
+            falling = lever.falling(creep_time)
+            surface.mount(falling, falling.at_start())
             self.controls = controls._replace(
                 shortest_step=1e-9 * creep_time, longest_step=duration, top_speed=1e-300,
                 prediction=0.2, memory=0.2, force=1.0, trigger=np.inf,
@@ -266,11 +272,12 @@ class Run:
                 if outcome == REMESH:
                     surface.remesh(records[-1]["coarseness"])
             behind = delayed * np.abs(surface.fields[LOAD] - surface.fields[-1]).max()
-            if parameters.lever[0] > 0:
-                unbalanced = clock["force"] / parameters.lever[0] - clock["deflection"]
+            if surface.bends:
+                unbalanced = clock["force"] / falling.stiffness - clock["deflection"]
                 behind = max(behind, abs(unbalanced))
             if outcome != FINISHED or behind < 1e-4 * surface.edge_gap:
                 break
+        surface.mount(lever, state)
         surface.functions, surface.parameters, self.controls = functions, parameters, controls
         surface.background = background
         surface.fields = surface.fields[:-1].copy()
@@ -317,7 +324,7 @@ class Run:
                 "most_nodes": surface.most_nodes,
                 "finest_spacing": surface.finest_spacing,
                 "growth": surface.growth,
-                "cycles": max(self.cycle, getattr(self.motion, "periods", 1)),
+                "cycles": max(self.cycle, count_periods(self.motion)),
                 "wall_time": seconds,
             },
             warnings=self._warnings(),

@@ -1,12 +1,14 @@
 """The default solver: implicit energy-minimising steps on a mesh that follows the contact edge."""
 
-import warnings
 from dataclasses import dataclass
 from time import perf_counter
 from typing import ClassVar
 
+from softafm.checks.callers import warn_caller
 from softafm.checks.validate import finite, positive
 from softafm.compiled.announce import announced_compilation
+from softafm.instrument.lever import check_lever, lever_of
+from softafm.instrument.motion import count_periods, is_steady
 from softafm.instrument.motions import lowest_height
 from softafm.solvers.history import History
 
@@ -48,7 +50,15 @@ class Energy:
             raise ValueError(f"most_steps = {self.most_steps!r} steps: must be at least 1")
 
     def solve(
-        self, contact, motion, *, stiffness=None, tolerance=1e-2, profiles=False, progress=None
+        self,
+        contact,
+        motion,
+        *,
+        stiffness=None,
+        lever=None,
+        tolerance=1e-2,
+        profiles=False,
+        progress=None,
     ) -> History:
         """Carry the contact, flat and relaxed at first, through the motion.
 
@@ -59,6 +69,8 @@ class Energy:
         stiffness
             Stiffness of a lever that carries the tip and whose base moves so, N/m; None moves the
             tip itself.
+        lever
+            In place of a stiffness, a lever of any kind: see ``softafm.instrument.lever``.
         tolerance
             Target relative error of forces and energies.
         profiles
@@ -68,25 +80,34 @@ class Energy:
 
         Raises
         ------
+        ValueError
+            If ``lever`` is none, or a stiffness is given besides.
         DivergedError
             If ``most_steps`` do not suffice or no stable shape is found.
         """
+        if lever is None:
+            lever = lever_of(stiffness)
+        elif stiffness is not None:
+            raise ValueError(
+                f"stiffness = {stiffness:g} N/m: must be left out where there is a lever"
+            )
+        check_lever(lever)
         started = perf_counter()
         with announced_compilation(self.kind):
             from softafm.solvers.energy.run import Run
 
-            run = Run(self, contact, motion, stiffness or 0.0, tolerance, profiles)
-        for fraction in run.cycles() if getattr(motion, "steady", False) else run.steps():
+            run = Run(self, contact, motion, lever, tolerance, profiles)
+        for fraction in run.cycles() if is_steady(motion) else run.steps():
             if progress is not None:
                 progress(fraction, f"{fraction:.0%} of the motion")
         history = run.history(perf_counter() - started)
         for warning in history.warnings:
-            warnings.warn(warning, stacklevel=4)  # the caller of the mode
+            warn_caller(warning)
         return history
 
     def expected_seconds(self, contact, motion) -> float:
         """Order of magnitude of a run at the default tolerance, s on one core, as measured."""
-        cycles = getattr(motion, "periods", 1)
+        cycles = count_periods(motion)
         return 4e-3 * cycles + 2e-5 * cohesive_lengths_crossed(contact, motion)
 
 
@@ -100,8 +121,8 @@ def cohesive_lengths_crossed(contact, motion) -> float:
         return 0.0
     law, radius = contact.surface, contact.contact_radius(lowest_height(motion))
     modulus = contact.softened_modulus
-    if not getattr(motion, "steady", False):
+    if not is_steady(motion):
         duration = float(motion.breaks[-1] - motion.breaks[0])
         modulus = max(modulus, 1 / float(contact.body.compliance.at(duration)))
     length = modulus * law.range**2 / law.work_of_adhesion
-    return 2 * radius / length * getattr(motion, "periods", 1)
+    return 2 * radius / length * count_periods(motion)

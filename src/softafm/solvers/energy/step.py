@@ -1,14 +1,22 @@
 """The compiled loop of the energy solver: propose a step, solve it, judge it, accept it."""
 
-from math import pi
 from typing import NamedTuple
 
 import numpy as np
 from numba import float64, int64, types
 
 from softafm.compiled.dense import multiply, row_products, solve_factorised
-from softafm.compiled.functions import HEIGHT, PRESSURE, PROFILE, compile_for, inlined, pointer
-from softafm.solvers.energy.equilibrium import equilibrate, raise_tip, tip_force
+from softafm.compiled.functions import (
+    ACCEPTANCE,
+    HEIGHT,
+    PRESSURE,
+    PROFILE,
+    RESPONSE,
+    compile_for,
+    inlined,
+    pointer,
+)
+from softafm.solvers.energy.equilibrium import equilibrate, raise_tip, spring_constant, tip_force
 from softafm.solvers.energy.frame import following_frame, radius_of_gap, reframe
 from softafm.solvers.energy.layout import (
     BACKGROUND,
@@ -161,7 +169,10 @@ def predict(frame, step, history, fields, clock, mesh, weights, guess, work, sha
 
 
 @inlined
-def propose(step, frame, height, profile, parameters, background, mesh, fields, clock, work):
+def propose(
+    step, frame, height, profile, respond, parameters, background, mesh, fields, clock,
+    lever_state, work,
+):  # fmt: skip
     """Move the past to the frame of a step, and guess the shape at its end: ``work.u``."""
     n, modes = mesh.nodes.size, parameters.retardation.size
     history = int(clock.history)
@@ -203,11 +214,26 @@ def propose(step, frame, height, profile, parameters, background, mesh, fields, 
     for i in range(n):
         work.u[i] = work.guess[i]
     work.u[n] = deflection
-    # Backward Euler for a lever with a dashpot: a stiffer spring about a rest position below.
-    drag = parameters.lever[1] / step
-    lever = parameters.lever[0] * (1.0 + drag) / (2.0 * pi * frame * frame)
-    rest = clock.deflection * drag / (1.0 + drag)
+    rest, stiffness = respond(
+        time, step, clock.deflection, clock.force, parameters.lever, lever_state
+    )
+    lever = spring_constant(stiffness, frame)
     return Trial(step, frame, h0, compliance, deflection, lever, rest, history)
+
+
+@inlined
+def solve(trial, law, parameters, mesh, controls, clock, work):
+    """Bring surface and lever into equilibrium, with the load; whether a stable shape was near."""
+    iterations = equilibrate(
+        work.u, work.v, trial.frame * trial.compliance, work.standoff, trial.lever, trial.rest,
+        work.rise, mesh, law, parameters.law, CLOSEST * controls.edge_gap, controls.newton,
+        clock, work.hessian, work.newton, work.far,
+    )  # fmt: skip
+    clock.newtons += abs(iterations)
+    if iterations > 0:
+        for i in range(mesh.nodes.size):
+            work.load_new[i] = (work.v[i] - work.u[i]) / trial.compliance
+    return iterations > 0
 
 
 @inlined
@@ -297,25 +323,26 @@ def move_clock(clock, step, frame, edge, force, deflection):
 
 @compile_for(
     types.UniTuple(int64, 2)(
-        pointer(HEIGHT), pointer(PROFILE), pointer(PRESSURE), PARAMETERS,
-        BACKGROUND, MESH, TABLE, CONTROLS, MATRIX, CLOCK, RECORDS, MATRIX, ROOM,
+        pointer(HEIGHT), pointer(PROFILE), pointer(PRESSURE), pointer(RESPONSE),
+        pointer(ACCEPTANCE), PARAMETERS, BACKGROUND, MESH, TABLE, CONTROLS, MATRIX, CLOCK, VECTOR,
+        RECORDS, MATRIX, ROOM,
     ),
 )  # fmt: skip
 def advance(
-    height, profile, law, parameters, background, mesh, table, controls, fields, clock, records,
-    shapes, room,
+    height, profile, law, respond, accept_force, parameters, background, mesh, table, controls,
+    fields, clock, lever_state, records, shapes, room,
 ):  # fmt: skip
     """Step the surface in time until ``controls.end``, full records, a need to remesh, TABULATE: a
     frame is wanted whose stiffness the table does not reach, or FALL: no stable shape within the
     shortest step, which is not taken.
 
-    ``fields`` (MEMORY + modes, n) and ``clock`` hold the state and are updated. Every accepted step
+    ``fields`` (MEMORY + modes, n), ``clock`` and ``lever_state`` hold the state and are updated,
+    by accepted steps only. Every accepted step
     fills one of ``records``, and a row of ``shapes`` (the deformation) if that has rows. Returns
     why it stopped, and the number of steps accepted. ``room`` is overwritten.
     """
     n = mesh.nodes.size
     work = furnish(room)
-    gap, pressure = work.newton[0, :n], work.newton[1, :n]
     shortest = controls.shortest_step
     count, tabulated = 0, 0.0
     while count < records.size:
@@ -333,24 +360,19 @@ def advance(
             tabulated = frame
         clock.tries += 1
         trial = propose(
-            step, frame, height, profile, parameters, background, mesh, fields, clock, work
-        )
-        iterations = equilibrate(
-            work.u, work.v, trial.frame * trial.compliance, work.standoff, trial.lever, trial.rest,
-            work.rise, mesh, law, parameters.law, CLOSEST * controls.edge_gap, controls.newton,
-            clock, work.hessian, work.newton, work.far,
+            step, frame, height, profile, respond, parameters, background, mesh, fields, clock,
+            lever_state, work,
         )  # fmt: skip
-        clock.newtons += abs(iterations)
-        if iterations < 0:
+        stable = solve(trial, law, parameters, mesh, controls, clock, work)
+        if not stable:
             if step <= shortest:
                 return FALL, count
             clock.step = max(RETRIED * step, 0.999 * shortest)
             continue
-        for i in range(n):
-            work.load_new[i] = (work.v[i] - work.u[i]) / trial.compliance
         force = tip_force(
-            pressure, gap, work.rise, mesh, trial.frame, law, parameters.law, work.far
-        )
+            work.newton[1, :n], work.newton[0, :n], work.rise, mesh, trial.frame, law,
+            parameters.law, work.far,
+        )  # fmt: skip
         error = judge(trial, force, parameters, mesh, controls, clock, work)
         growth = SAFETY * max(error, 1e-6) ** (-1.0 / trial.history)
         if error > REFUSED and step > shortest:
@@ -364,6 +386,7 @@ def advance(
             continue
 
         clock.time = controls.end if step == left else clock.time + step
+        accept_force(clock.time, step, clock.force, force, parameters.lever, lever_state)
         record = records[count]
         accept(trial, force, growth, parameters, mesh, controls, fields, clock, work, record)
         if shapes.shape[0] > count:

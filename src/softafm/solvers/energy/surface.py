@@ -1,6 +1,6 @@
 """The surface of the energy solver between calls of its compiled loop: mesh, fields, clock."""
 
-from math import ceil, log2, sqrt
+from math import ceil, inf, log2, sqrt
 
 import numpy as np
 
@@ -15,6 +15,7 @@ from softafm.solvers.energy.layout import (
     MEMORY,
     ORIGIN,
     Background,
+    Functions,
     Parameters,
     Room,
     Table,
@@ -43,22 +44,24 @@ class Surface:
     spacing aimed at, as a part of the width of the cohesive zone.
     """
 
-    def __init__(self, contact, motion, stiffness, strictness: float, finest_spacing: float):
+    def __init__(self, contact, motion, lever, strictness: float, finest_spacing: float):
         self.contact = contact
         breaks = motion.breaks
         compliance = contact.body.compliance.chain(breaks[-1] - breaks[0])
         height, height_parameters = motion.compiled_height
         profile, tip_parameters = contact.tip.compiled_profile
         law, potential, law_parameters = contact.surface.compiled_pressure
-        self.functions = height, profile, law, potential
+        respond, accept_force, lever_parameters = lever.compiled_response
+        self.functions = Functions(height, profile, law, respond, accept_force, potential)
         self.parameters = Parameters(
             height_parameters,
             tip_parameters,
             law_parameters,
             np.append(compliance.instantaneous, compliance.elements),
             np.array(compliance.retardation_times, float),
-            np.array([stiffness, 0.0]),
+            lever_parameters,
         )
+        self.lever, self.lever_state = lever, lever.at_start()
         origin = gap_origin(contact)
         law_parameters[ORIGIN] = origin
         self.edge_gap = contact.edge_gap - origin
@@ -123,6 +126,18 @@ class Surface:
     def time(self) -> float:
         """The instant, s."""
         return float(self.clock["time"])
+
+    @property
+    def bends(self) -> bool:
+        """Whether the lever follows a force at once."""
+        return self.lever.stiffness < inf
+
+    def mount(self, lever, state) -> None:
+        """Let another lever carry the tip, one that remembers ``state``, bent as it is now."""
+        respond, accept_force, parameters = lever.compiled_response
+        self.functions = self.functions._replace(respond=respond, accept_force=accept_force)
+        self.parameters = self.parameters._replace(lever=parameters)
+        self.lever, self.lever_state = lever, state
 
     def room(self) -> Room:
         """Return memory for the compiled loops to work in."""
@@ -203,7 +218,7 @@ class Surface:
         """Equilibrate at frozen memory and return the state as ``RECORD_FIELDS`` lists it."""
         mesh, clock = self.mesh, self.clock
         self.tabulate(float(clock["frame"]))
-        height_at, profile, law, potential = self.functions
+        height_at, profile, law, *_, potential = self.functions
         n, frame = mesh.nodes.size, clock["frame"]
         tip, pressure, scratch = np.empty(n), np.empty(n), np.empty(n)
         rise, far_work = np.empty(mesh.far.size), np.empty((3, mesh.far.size))
@@ -219,7 +234,7 @@ class Surface:
         pierced = standoff - shape < CLOSEST * self.edge_gap
         shape = np.where(pierced, standoff - self.edge_gap, shape)
         unknowns = np.append(shape, clock["deflection"])
-        lever = self.parameters.lever[0] / (2 * np.pi * frame**2)
+        lever = self.lever.stiffness / (2 * np.pi * frame**2) if self.bends else 0.0
         iterations = descend(
             unknowns, v, frame * instantaneous, base, lever, rise, mesh,
             law, potential, self.parameters.law, self.accuracy, self.room(),
@@ -249,7 +264,7 @@ class Surface:
     def energy(self) -> float:
         """Energy of the contact as an instantaneous elastic one, to infinity, and the lever, J."""
         mesh, frame, deflection = self.mesh, self.clock["frame"], self.clock["deflection"]
-        h0 = self.functions[0](self.time, self.parameters.height) + deflection
+        h0 = self.functions.height(self.time, self.parameters.height) + deflection
         load = self.fields[LOAD]
         self.tabulate(float(frame))
         elastic = np.pi * frame * self.parameters.compliance[0] * (load @ mesh.stiffness @ load)
@@ -257,14 +272,14 @@ class Surface:
         def density(radius, deformation):
             gap = h0 + self.contact.tip.profile(radius) - deformation - self.parameters.law[ORIGIN]
             found = np.empty(gap.size)
-            self.functions[3](gap, self.parameters.law, found, gap.size)
+            self.functions.potential(gap, self.parameters.law, found, gap.size)
             return found
 
         near = frame**2 * mesh.masses @ density(frame * mesh.nodes, self.fields[DEFORMATION])
         end = frame * mesh.nodes[-1]
         r = 2 * end / (1 + _POINTS)
         beyond = np.sum(_WEIGHTS * density(r, 0.0) * r**3 / (2 * end))
-        bending = 0.5 * self.parameters.lever[0] * deflection**2
+        bending = 0.5 * self.lever.stiffness * deflection**2 if self.bends else 0.0
         return float(elastic + bending + 2 * np.pi * (near + beyond))
 
 

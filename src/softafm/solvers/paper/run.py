@@ -1,6 +1,5 @@
 """One run of a fixed-step solver: a discretised surface, pieces of a motion, a history."""
 
-import warnings
 from collections.abc import Callable
 from itertools import pairwise
 from time import perf_counter
@@ -9,7 +8,9 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from softafm.bodies.mesh import beyond
+from softafm.checks.callers import warn_caller
 from softafm.errors import AccuracyWarning, DivergedError
+from softafm.instrument.motion import count_periods, is_steady
 from softafm.instrument.motions import lowest_height
 from softafm.solvers.history import History, Profiles
 from softafm.solvers.paper import kernel as k
@@ -92,12 +93,12 @@ def march(
         iteration or Iteration(),
         profiles,
     )
-    for fraction in run.cycles(tolerance) if getattr(motion, "steady", False) else run.steps():
+    for fraction in run.cycles(tolerance) if is_steady(motion) else run.steps():
         if progress is not None:
             progress(fraction, f"{fraction:.0%} of the motion")
     history = run.history(perf_counter() - started)
     for warning in history.warnings:
-        warnings.warn(warning, stacklevel=5)  # the caller of the mode
+        warn_caller(warning)
     return history
 
 
@@ -233,7 +234,7 @@ class _Run:
                 "rates": int(self.counters[k.RATES]),
                 "iterations": int(self.counters[k.ITERATIONS]),
                 "rates_beyond_fold": int(self.counters[k.BEYOND_FOLD]),
-                "cycles": max(self.cycle, getattr(self.motion, "periods", 1)),
+                "cycles": max(self.cycle, count_periods(self.motion)),
                 "wall_time": seconds,
             },
             warnings=tuple(self._warnings(records)),

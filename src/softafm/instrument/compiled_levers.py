@@ -1,0 +1,21 @@
+"""Compiled levers, called once a step by the loop of the default solver."""
+
+from math import inf
+
+from softafm.compiled.functions import ACCEPTANCE, RESPONSE, compiled
+
+
+@compiled(RESPONSE)
+def hold(time, step, deflection, force, parameters, state):
+    return deflection, inf
+
+
+@compiled(RESPONSE)
+def bend(time, step, deflection, force, parameters, state):
+    stiffness, drag = parameters[0], parameters[1] / step
+    return deflection * drag / (1.0 + drag), stiffness * (1.0 + drag)
+
+
+@compiled(ACCEPTANCE)
+def remember_nothing(time, step, before, force, parameters, state):
+    return

@@ -1,0 +1,111 @@
+"""What every mode does: the run, its dataset, and the finer run that checks it."""
+
+from collections.abc import Mapping
+from functools import partial
+from types import MappingProxyType
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+from softafm.contact import Contact
+from softafm.instrument.cantilever import Cantilever
+from softafm.modes.check import compare_with_finer, finer_run
+from softafm.modes.mode import MODES, Inputs, Mode
+from softafm.modes.start import carry, refuse_other_than_cantilever, regularise_contact
+from softafm.progress import Progress
+from softafm.results.content import HISTORY
+from softafm.results.datasets import dataset, history_variables, record_regularisation
+
+if TYPE_CHECKING:
+    from xarray import Dataset
+
+
+class Settings(NamedTuple):
+    """How a run is to be carried out: the options of ``force_distance`` of these names."""
+
+    solver: Any = None
+    tolerance: float = 1e-2
+    profiles: bool = False
+    progress: bool | Progress | None = None
+
+
+class Outcome(NamedTuple):
+    """What a run gave.
+
+    ``parts`` are what took part besides the contact, by name, ``solver`` and ``tolerance`` those
+    that were used, and ``data`` and ``coordinates`` variables of the result, as (dims, values).
+    """
+
+    parts: Mapping[str, Any]
+    solver: Any
+    tolerance: float
+    data: dict[str, tuple]
+    coordinates: dict[str, tuple]
+    warnings: tuple[Warning, ...] = ()
+    diagnostics: Mapping[str, float] = {}
+
+
+def perform(
+    mode: Mode,
+    contact: Contact,
+    motion: Any,
+    cantilever: Cantilever | None = None,
+    *,
+    tables: Mapping[str, Any] = MappingProxyType({}),
+    solver=None,
+    tolerance: float = 1e-2,
+    profiles: bool = False,
+    progress: bool | Progress | None = None,
+    check: bool = False,
+    regularise: float | None = None,
+) -> "Dataset":
+    """Run a mode and return its result, as the public functions of all modes do.
+
+    Parameters
+    ----------
+    mode
+        The record of the mode, which has been registered.
+    contact, motion, cantilever, tables
+        The ``Inputs``.
+    solver, tolerance, profiles, progress, check, regularise
+        As for ``force_distance``.
+
+    Raises
+    ------
+    ValueError
+        If an argument is out of range, or the mode is not registered.
+    DivergedError
+        If the solver cannot continue.
+    """
+    if MODES.get(mode.name) is not mode:
+        raise ValueError(f"mode '{mode.name}' is not known: call softafm.modes.register with it")
+    if mode.lever:
+        refuse_other_than_cantilever(cantilever)
+    finer = finer_run(check, solver, tolerance)
+    given, contact = contact, regularise_contact(contact, regularise)
+    inputs = Inputs(contact, motion, cantilever, tables)
+    found = simulate(mode, inputs, Settings(solver, tolerance, profiles, progress))
+    result = dataset(mode.name, contact, *found)
+    record_regularisation(result, given, contact, regularise)
+    if finer is not None:
+        repeat = partial(perform, mode, contact, motion, cantilever, tables=tables)
+        scales = partial(mode.scales, inputs)
+        compare_with_finer(mode, result, finer, found.tolerance, scales, repeat, progress)
+    return result
+
+
+def simulate(mode: Mode, inputs: Inputs, settings: Settings) -> Outcome:
+    """Run a mode on a contact as it is; return what it gave, of which no dataset is made."""
+    if mode.simulate is not None:
+        return mode.simulate(inputs, settings)
+    contact, motion, cantilever, _ = inputs
+    lever = {} if cantilever is None else {"stiffness": cantilever.stiffness}
+    solver, tolerance, history = carry(contact, mode.path(motion), *settings, **lever)
+    data, coordinates = history_variables(contact, history)
+    assert mode.observe is not None
+    observed = {
+        name: (mode.observables[name].dims, values)
+        for name, values in mode.observe(contact, motion, history).items()
+    }
+    data = {name: data[name] for name in HISTORY} | observed | data  # shapes of the surface last
+    return Outcome(
+        inputs.parts, solver, tolerance, data, coordinates, history.warnings, history.diagnostics
+    )
