@@ -23,8 +23,9 @@ import modes
 import numpy as np
 
 import softafm as sa
+from softafm.bodies.kernel import influence
+from softafm.bodies.mesh import unit_mesh
 from softafm.compiled.dense import factorise
-from softafm.halfspace.mesh import unit_mesh
 from softafm.solvers.energy import run as energy_run
 
 TAP = "ldpe-tap-setpoint-0.8"
@@ -251,7 +252,8 @@ def bound_rows() -> Iterator[tuple]:
 
 def spd(size: int) -> np.ndarray:
     """A symmetric positive matrix like that of a contact."""
-    stiffness = unit_mesh(0.05, 8.0 / size, 8.0).stiffness
+    mesh = unit_mesh(0.05, 8.0 / size, 8.0)
+    stiffness = np.linalg.inv(influence(mesh.nodes, mesh.spacing, mesh.masses))
     size = min(size, len(stiffness))
     return np.ascontiguousarray(stiffness[:size, :size])
 

@@ -312,7 +312,7 @@ WALL = "surface={law='repulsion', pressure_at_zero='100 MPa', decay='1 nm'}"
                 r"JKR, at 595\.2 MPa as flow sets in"]),
         (WALL, [r"work of adhesion +0 J/m² +repulsion: no adhesion", r"without adhesion, slow",
                 r"expected cost +under 1 s +no tension zone"]),
-        ("sample={model='epoxy'}", [r"creep times +24 modes +102\.2 ns to 105\.5 ks"]),
+        ("sample={model='epoxy'}", [r"creep times +24 elements +102\.2 ns to 105\.5 ks"]),
         ("sample={model='elastic', E='1 GPa', poisson=0.3}", [r"modulus +1 GPa +elastic *\n"]),
         (POWER_LAW + "['1 us', '1 ms']}", [r"\d modes .*the motion outlasts it", r"of the modes"]),
         (POWER_LAW + "['1 us', '1 s']}", [r"represented .*modes +to 0\.\d+ %, from 1 µs to 1 s\b"]),

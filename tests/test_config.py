@@ -285,7 +285,7 @@ def test_samples(load, sample, solid):
     table = {"model": "standard-linear-solid", **sample}
     built = load({**TAP, "sample": table}).contact.sample
     assert type(built) is type(solid)
-    for part, expected in zip(built.reduced_compliance, solid.reduced_compliance, strict=True):
+    for part, expected in zip(built.compliance, solid.compliance, strict=True):
         np.testing.assert_allclose(part, expected, rtol=1e-14)
 
 
@@ -1219,7 +1219,7 @@ CONE = {"shape": "cone", "half_angle": "20 deg", "apex_radius": "8 nm"}
         ("sample", {**CELL, "exponent": 1}, "sample.exponent = 1: must be above 0 (elastic) and b"),
         ("sample", {**CELL, "window": ["1e-20 s", "1e20 s"], "error": 1e-3},
          "sample.window = ['1e-20 s', '1e20 s']: error = 0.001 over window = (1e-20, 1e+20) s "
-         "needs more than 40 modes: must be larger, or the window shorter"),
+         "needs more than 40 elements: must be larger, or the window shorter"),
         ("sample", {"model": "fractional-standard-linear-solid", "E0": "1 GPa", "E_inf": "2 GPa",
                     "creep_time": "1 ms", **POWER},
          "sample.E_inf = '2 GPa': must be at most sample.E0 = '1 GPa'"),

@@ -37,7 +37,7 @@ contacts = st.builds(
 def scales(contact):
     """Radius R of the tip, the adhesion 2πW/E of JKR in m, and pull-off (radius, height) in m."""
     R = contact.tip.radius
-    pull = 2 * pi * contact.surface.work_of_adhesion * contact.sample.reduced_compliance.relaxed
+    pull = 2 * pi * contact.surface.work_of_adhesion * contact.body.compliance.relaxed
     radius = (R**2 * pull / 16) ** (1 / 3)
     return R, pull, radius, 3 * radius**2 / R
 
@@ -106,7 +106,8 @@ def test_heights_far_out_of_scale():
 def test_any_object_with_these_attributes_is_a_sample():
     class Rubber:
         kind = "rubber"
-        reduced_compliance = LDPE.sample.reduced_compliance
+        compliance = LDPE.sample.compliance
+        poisson = LDPE.sample.poisson
 
     contact = sa.Contact(LDPE.tip, Rubber(), LDPE.surface)
     assert contact.tabor_relaxed == LDPE.tabor_relaxed

@@ -133,9 +133,9 @@ def test_the_sample_that_is_a_class_is_burgers_model(extending):
     time = np.array([0.0, 1e-5, 1e-4, 1e-3])
     creep = 1 / 2e9 + (1 - np.exp(-time / 1e-4)) / 0.5e9 + time / 1e6
     np.testing.assert_allclose(burgers.creep_compliance(time), creep, rtol=1e-12)
-    E_inf, moduli, times = rheology.chain_to_prony(*burgers.reduced_compliance)
-    series = rheology.GeneralizedMaxwell(E_inf, moduli * (1 - 0.4**2), times, 0.4)
-    for part, expected in zip(series.reduced_compliance, burgers.reduced_compliance, strict=True):
+    E_inf, moduli, times = rheology.chain_to_prony(*burgers.compliance)
+    series = rheology.GeneralizedMaxwell(E_inf, moduli, times, 0.4)
+    for part, expected in zip(series.compliance, burgers.compliance, strict=True):
         np.testing.assert_allclose(part, expected, rtol=1e-10)
 
 
@@ -145,6 +145,48 @@ def test_classes_run_in_the_papers_solver_too(extending):
     other = sa.force_distance(extending.contact, motion, solver=solver)
     for name in ("force_min", "force_max", "loop_energy"):
         assert float(extending.curve[name]) == pytest.approx(float(other[name]), rel=2e-3)
+
+
+def test_the_skin_of_the_extending_page_answers_as_two_layers_do(extending):
+    # Incompressible layers in the Hankel domain, at unit wavenumber: the vertical displacement w is
+    # a sum of (1, z) e^(±z), the horizontal one w', the shear stress w + w'' in shear moduli, and
+    # the normal one 2w' - (w''' - w').
+    def rows(z, sign, modulus):
+        w = [
+            np.array([sign**k, sign**k * z + k * sign ** abs(k - 1)]) * np.exp(sign * z)
+            for k in range(4)
+        ]
+        normal = modulus * (2 * w[1] - (w[3] - w[1]))
+        return np.array([w[0], w[1], modulus * (w[0] + w[2]), normal])
+
+    for ratio in (0.1, 3.0, 50.0):
+        body = replace(extending.coated.sample, ratio=ratio)
+        for thickness in (0.05, 0.5, 2.0):
+            top = np.hstack([rows(0.0, -1, 1.0), rows(0.0, 1, 1.0)])[2:]
+            skin = np.hstack([rows(thickness, -1, 1.0), rows(thickness, 1, 1.0)])
+            base = rows(thickness, -1, ratio)
+            system = np.vstack([np.hstack([top, np.zeros((2, 2))]), np.hstack([skin, -base])])
+            found = np.linalg.solve(system, [0, 1, 0, 0, 0, 0])
+            alone = np.linalg.solve(rows(0.0, -1, 1.0)[2:], [0, 1])
+            answer = (found[0] + found[2]) / alone[0]
+            factor = body.factor(np.array([thickness]))[0]
+            assert factor == pytest.approx(answer, rel=1e-10)
+
+
+def test_the_skin_of_the_extending_page_is_tapped(extending):
+    tap = extending.tap
+    plain = replace(extending.coated, sample=extending.rubber)
+    alone = sa.tapping_cycle(plain, amplitude=20e-9, mean_height=18.5e-9, frequency=200e3)
+    assert float(tap.force_max) > 1.02 * float(alone.force_max)
+    lost = np.trapezoid(tap.viscous_power, tap.time) + float(tap.jump_energy.sum())
+    assert lost == pytest.approx(float(tap.dissipation), rel=0.02)
+    for wrong, message in (
+        ({"thickness": 0.0}, "^thickness = 0 m: must be greater than 0$"),
+        ({"ratio": -1.0}, "^ratio = -1: must be greater than 0$"),
+        ({"sample": sa.Elastic(1e9, 0.3)}, "^sample.poisson = 0.3: must be 0.5 in a skin$"),
+    ):
+        with pytest.raises(ValueError, match=message):
+            replace(extending.coated.sample, **wrong)
 
 
 def test_the_motion_of_the_extending_page_bounces(extending):

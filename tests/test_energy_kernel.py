@@ -8,7 +8,9 @@ from scipy.integrate import quad
 from scipy.interpolate import CubicSpline
 
 import softafm as sa
-from softafm.halfspace.mesh import node_index, unit_mesh
+from softafm.bodies import HalfSpace
+from softafm.bodies.mesh import node_index, unit_mesh
+from softafm.bodies.stiffness import Stiffness
 from softafm.instrument.compiled_levers import hold, remember_nothing
 from softafm.solvers.energy.descent import descend
 from softafm.solvers.energy.equilibrium import equilibrate, tip_force
@@ -20,8 +22,9 @@ from softafm.solvers.energy.layout import (
     RECORD_FIELDS,
     Background,
     Controls,
-    Mesh,
     Parameters,
+    Table,
+    mesh_of,
     new_clock,
     new_room,
 )
@@ -36,15 +39,25 @@ FRAME = 1.5 * np.sqrt(R * Z0)
 seeds = st.integers(0, 2**32 - 1)
 
 
+def mesh_with_stiffness(mesh):
+    """A mesh on a half-space."""
+    return mesh_of(mesh, Stiffness(HalfSpace(sa.Elastic(1e9, 0.3)), mesh).uniform, 0.0)
+
+
+UNIFORM = Table(np.empty((0, 1, 1)), 0.0, 1.0, np.empty((0, 0)))
+"""The stiffness is the same in all frames."""
+
+
 # Fields from mesh to mesh
 
 
-def carried(values, old, new, stretch=1.0):
+def carried(values, old, new, stretch=1.0, decay=0.0):
     out = np.empty((1, new.nodes.size))
     work = np.empty((7, new.nodes.size))
     transfer(
-        values[None], old.nodes[-1], old.edge_spacing, old.growth, stretch, new.nodes, work, out
-    )
+        values[None], old.nodes[-1], old.edge_spacing, old.growth, decay, stretch, new.nodes, work,
+        out,
+    )  # fmt: skip
     return out[0]
 
 
@@ -80,6 +93,23 @@ def test_transfer_of_a_smooth_field(stretch):
     assert stretch <= 1 or np.any(~inside)
 
 
+def test_fields_fall_beyond_their_mesh_as_their_body_says():
+    field, frame, decay, stretch = 1 / (1 + OLD.nodes), 3e-9, 2e7, 1.7
+    radius = stretch * OLD.nodes
+    outside = radius > OLD.nodes[-1]
+    fallen = field[-1] * OLD.nodes[-1] / radius * np.exp(-decay * frame * (radius - OLD.nodes[-1]))
+    transferred = carried(field, OLD, OLD, stretch, decay * frame)
+    reframed, work = np.empty((1, field.size)), np.empty((7, field.size))
+    mesh = mesh_with_stiffness(OLD)._replace(decay=decay)
+    reframe(field[None], mesh, frame, stretch, work, reframed)
+    for found in (transferred, reframed[0]):
+        assert np.count_nonzero(outside) > 2
+        np.testing.assert_allclose(found[outside], fallen[outside], rtol=1e-12)
+    np.testing.assert_array_equal(
+        transferred[~outside], carried(field, OLD, OLD, stretch)[~outside]
+    )
+
+
 def test_transfer_error_falls_with_a_high_power_of_the_growth():
     def error(growth):
         mesh = unit_mesh(growth / 2, growth, 8.0)
@@ -96,7 +126,7 @@ def test_transfer_error_falls_with_a_high_power_of_the_growth():
 def test_reframing_is_a_transfer_to_the_same_mesh(stretch):
     field = 1 / np.sqrt(1 + OLD.nodes[None] ** 2)
     found, work = np.empty(field.shape), np.empty((7, field.size))
-    reframe(field, Mesh(*OLD), stretch, work, found)
+    reframe(field, mesh_with_stiffness(OLD), 1.0, stretch, work, found)
     assert np.allclose(found[0], carried(field[0], OLD, OLD, stretch), rtol=1e-10, atol=0)
     assert stretch != 1 or np.array_equal(found, field)
 
@@ -199,7 +229,7 @@ def test_memory_of_a_contact_held_rigidly_never_grows(lag):
 # Equilibrium
 
 
-MESH = Mesh(*unit_mesh(0.15, 0.25, 8.0))
+MESH = mesh_with_stiffness(unit_mesh(0.15, 0.25, 8.0))
 GAPS = TIP.profile(FRAME * MESH.nodes)
 PRESSURE, POTENTIAL, PARAMETERS = LAW.compiled_pressure
 
@@ -438,15 +468,15 @@ def test_steps_equal_those_of_a_plain_newton_method():
     )  # fmt: skip
     n, modes = MESH.nodes.size, retardation.size
     past = 0.2 / np.array([[3e-9], [1e-9]]) * np.array([[Z0], [-Z0]]) / (1 + MESH.nodes**2)
-    background = Background(past, FRAME, MESH.nodes[-1], MESH.edge_spacing, MESH.growth, -1e-7)
+    background = Background(past, FRAME, MESH.nodes[-1], MESH.edge_spacing, MESH.growth, 0.0, -1e-7)
     fields, clock = np.zeros((MEMORY + modes, n)), new_clock()
     clock["step"], clock["history"] = step, 1
     clock["frame"] = clock["frame_earlier"] = clock["frame_earliest"] = FRAME
     clock["axis_gap"] = motion.height(0.0)
     records, shapes = np.zeros(count, RECORD_FIELDS), np.zeros((count, n))
     outcome, taken = advance(
-        height, profile, PRESSURE, hold, remember_nothing, parameters, background, MESH, controls,
-        fields, clock, np.empty(0), records, shapes, new_room(n, MESH.far.size, modes),
+        height, profile, PRESSURE, hold, remember_nothing, parameters, background, MESH, UNIFORM,
+        controls, fields, clock, np.empty(0), records, shapes, new_room(n, MESH.far.size, modes),
     )  # fmt: skip
     assert outcome == FULL
     assert taken == count

@@ -11,7 +11,7 @@ FLOORS = (
     {"errors", "progress", "units"},
     {"checks"},
     {"compiled"},
-    {"halfspace", "instrument"},
+    {"bodies", "instrument"},
     {"files", "solvers"},
     {"results", "rheology", "surfaces", "tips"},
     {"contact", "indentation", "samples"},

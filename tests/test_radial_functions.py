@@ -5,8 +5,8 @@ import pytest
 from scipy.integrate import quad
 from scipy.special import ellipkm1, j0
 
-from softafm.halfspace import radial_functions as functions
-from softafm.halfspace.rings import disc, ring_influence
+from softafm.bodies import radial_functions as functions
+from softafm.bodies.rings import disc, ring_influence
 
 # ρ_j(s) = ∫_0^1 cos(jπr) k(r, s) dr for j = 0, 1, 2, 5, 10, by adaptive quadrature of others.
 COSINE_RESPONSES = {

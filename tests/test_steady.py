@@ -125,8 +125,8 @@ def averaged_tap(contact, amplitude, mean_height, frequency):
     edges = np.linspace(0, 25e-9, 121)
     r, influence = rings(edges)
     areas, tip = np.pi * np.diff(edges**2), contact.tip.profile(r)
-    compliance = contact.sample.reduced_compliance
-    stiff, soft = compliance.instantaneous, compliance.modes[0]
+    compliance = contact.body.compliance
+    stiff, soft = compliance.instantaneous, compliance.elements[0]
     law = contact.surface
     angles = np.linspace(0, np.pi, 121)  # the way up is as the way down
     shares = np.full(angles.size, 1 / (angles.size - 1))

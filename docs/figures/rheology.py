@@ -56,18 +56,18 @@ def represented() -> None:
                 PowerLaw(1e6, a, (10.0**-decades, 1), 0.5, error=error)
                 for a in (0.1, 0.3, 0.5, 0.8)
             ]
-            shown = (f"{law.mode_count} ({law.represented_error:.2g})" for law in laws)
+            shown = (f"{law.element_count} ({law.represented_error:.2g})" for law in laws)
             print(f"{decades}, {error:g}:", ", ".join(shown))
     for a in (0.3, 0.5, 0.8):
         solid = FractionalStandardLinearSolid(1e9, 1e7, 1e-3, a, (1e-6, 1), 0.5)
-        print(f"fractional solid, a = {a}: {solid.mode_count} ({solid.represented_error:.2g})")
+        print(f"fractional solid, a = {a}: {solid.element_count} ({solid.represented_error:.2g})")
     for a in (0.3, 0.5, 0.8, 0.9):
         law = PowerLaw(1e6, a, (1e-6, 1), 0.5)
         time = np.geomspace(1e-5, 0.1, 400)
         off = np.max(np.abs(law.relaxation_modulus(time) * time**a / 1e6 - 1))
         print(f"relaxation modulus, a decade within the window, a = {a}: {100 * off:.2g} %")
     start = perf_counter()
-    PowerLaw(1e6, 0.31, (1e-6, 1), 0.5).mode_count  # noqa: B018
+    PowerLaw(1e6, 0.31, (1e-6, 1), 0.5).element_count  # noqa: B018
     print(f"time to represent: {perf_counter() - start:.2g} s")
 
 

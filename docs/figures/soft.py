@@ -29,7 +29,7 @@ ELASTIC = sa.Contact(
 
 def jkr_loop() -> float:
     """Work that a JKR contact costs which forms at h0 = 0 and parts at its last stable shape, J."""
-    E = 1 / ELASTIC.sample.reduced_compliance.relaxed
+    E = 1 / ELASTIC.body.compliance.relaxed
 
     def height(a):
         return sqrt(2 * pi * a * W / E) - a**2 / RADIUS

@@ -7,7 +7,9 @@ from math import inf, pi, sqrt
 import numpy as np
 from numpy.typing import ArrayLike
 
-from softafm.checks.kinds import SAMPLE, refuse_incomplete, refuse_other
+from softafm.bodies import Body
+from softafm.bodies.body import body_of
+from softafm.checks.kinds import refuse_other
 from softafm.checks.validate import tabor_of
 from softafm.rheology import Solid
 from softafm.surfaces import SurfaceLaw
@@ -15,8 +17,6 @@ from softafm.surfaces.limits import LONGEST
 from softafm.tips import Tip
 
 _ZOOMS, _POINTS = 9, 33
-_ANGLES, _ANGLE_WEIGHTS = (pi / 4 * x for x in np.polynomial.legendre.leggauss(16))
-_SINES = np.sin(_ANGLES + pi / 4)
 _SOFT = 1e-4
 """Share of the modulus to which the repulsion of a law without attraction falls at the edge."""
 _MOST_STRETCHES, _SAME = 60, 1e-9
@@ -24,14 +24,14 @@ _MOST_STRETCHES, _SAME = 60, 1e-9
 
 @dataclass(frozen=True)
 class Contact:
-    """A rigid tip above a viscoelastic half-space with a surface law between them.
+    """A rigid tip above a viscoelastic body with a surface law between them.
 
     Parameters
     ----------
     tip
         Shape of the tip, e.g. ``Paraboloid``.
     sample
-        Rheology of the half-space, e.g. ``StandardLinearSolid``.
+        Rheology of a half-space, e.g. ``StandardLinearSolid``, or a ``softafm.bodies.Body``.
     surface
         Pressure against gap, e.g. ``LennardJones``.
 
@@ -42,23 +42,33 @@ class Contact:
     """
 
     tip: Tip
-    sample: Solid
+    sample: Solid | Body
     surface: SurfaceLaw
 
     def __post_init__(self) -> None:
         refuse_other("tip", self.tip, Tip, "a tip such as softafm.Paraboloid")
-        refuse_incomplete("sample", self.sample, SAMPLE, "a sample such as softafm.Elastic")
+        body_of(self.sample)
         refuse_other(
             "surface", self.surface, SurfaceLaw, "a surface law such as softafm.LennardJones"
         )
 
+    @cached_property
+    def body(self) -> Body:
+        """The elastic thing under the tip: ``sample``, or a half-space of it."""
+        return body_of(self.sample)
+
+    @property
+    def rheology(self) -> Solid:
+        """The sample itself, of a body the one at its surface."""
+        return self.body.sample
+
     @property
     def _modulus_instantaneous(self) -> float:
-        return 1 / self.sample.reduced_compliance.instantaneous
+        return 1 / self.body.compliance.instantaneous
 
     @property
     def _modulus_relaxed(self) -> float:
-        return 1 / self.sample.reduced_compliance.relaxed
+        return 1 / self.body.compliance.relaxed
 
     @property
     def adhesive(self) -> bool:
@@ -82,7 +92,7 @@ class Contact:
     @property
     def softened_modulus(self) -> float:
         """Long-term reduced modulus; of a sample that flows, its modulus when flow sets in, Pa."""
-        creep = self.sample.reduced_compliance
+        creep = self.body.compliance
         if creep.fluidity == 0:
             return 1 / creep.relaxed
         slowest = max([creep.instantaneous / creep.fluidity, *creep.retardation_times])
@@ -124,7 +134,8 @@ class Contact:
         """A force to be felt, N: a part of the pull-off, or of Hertz's at a depth of one reach."""
         if self.adhesive:
             return 0.2 * pi * self.effective_radius * self.surface.work_of_adhesion
-        return 1e-2 * self.softened_modulus * self.open_radius * self.reach
+        modulus = self.softened_modulus * self.body.hardening(self.open_radius)
+        return 1e-2 * modulus * self.open_radius * self.reach
 
     def _tabor(self, modulus: float) -> float:
         if not self.adhesive:
@@ -239,10 +250,8 @@ class Contact:
     def contact_radius(self, tip_height: float) -> float:
         """Radius of the relaxed contact expected at a tip height (m, negative = indented), m.
 
-        The stable branch of JKR (Johnson, Kendall and Roberts 1971) for any profile (Maugis and
-        Barquins 1983), −h0 = δ(a) − sqrt(2πaW/E_inf) with δ(a) = a ∫ g'(r)/√(a² − r²) dr, that is
-        a²/R of a paraboloid; zero where no contact exists. A sample that flows counts with its
-        softened modulus.
+        The stable branch of JKR (Johnson, Kendall and Roberts 1971), by the ``depth`` of the body;
+        zero where no contact exists. A sample that flows counts with its softened modulus.
         """
         depth = -tip_height
         low, shallowest = self._last_contact
@@ -271,9 +280,5 @@ class Contact:
 
     def _relaxed_depth(self, radius: np.ndarray) -> np.ndarray:
         """Depth of the tip, m, in relaxed contacts of some radii, m, shape (n,)."""
-        slope = self.tip.slope(radius[:, None] * _SINES)
-        depth = radius * (slope @ _ANGLE_WEIGHTS)
-        if self.adhesive:
-            pull = 2 * pi * self.surface.work_of_adhesion / self.softened_modulus
-            depth -= np.sqrt(pull * radius)
-        return depth
+        work = self.surface.work_of_adhesion if self.adhesive else 0.0
+        return self.body.depth(self.tip, radius, self.softened_modulus, work)

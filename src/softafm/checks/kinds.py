@@ -6,8 +6,13 @@ from typing import Any
 
 from softafm.checks.refusals import all_of, shown
 
-SAMPLE = ("kind", "reduced_compliance")
+SAMPLE = ("kind", "compliance", "poisson")
 """What a sample has, whatever its class."""
+REDUCED = (
+    "has a reduced_compliance only: must have compliance, the creep compliance under uniaxial "
+    "stress without the factor 1 − ν², and poisson"
+)
+"""What is wrong with a sample that states its compliance as a half-space has it."""
 
 
 def members(protocol: type) -> tuple[str, ...]:
@@ -34,6 +39,13 @@ def refuse_incomplete(name: str, value: Any, needed: Sequence[str], wanted: str)
     raise ValueError(
         f"{name} = {_describe_given(value)}: must be {wanted}{lacks}{_describe_call(value)}"
     )
+
+
+def refuse_sample(name: str, value: Any) -> None:
+    """Raise ValueError if ``value`` lacks something that a sample has."""
+    if hasattr(value, "reduced_compliance") and not hasattr(value, "compliance"):
+        raise ValueError(f"{name} = {_describe_given(value)}: {REDUCED}")
+    refuse_incomplete(name, value, SAMPLE, "a sample such as softafm.Elastic")
 
 
 def refuse_non_dataset(name: str, value: Any) -> None:

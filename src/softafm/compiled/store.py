@@ -20,7 +20,7 @@ from pathlib import Path
 from time import time
 
 PACKAGE = Path(__file__).parents[1]
-ROOMS = ("compiled", "halfspace", "instrument", "solvers", "surfaces", "tips")
+ROOMS = ("compiled", "bodies", "instrument", "solvers", "surfaces", "tips")
 """Folders of the package in which compiled functions, and what they call, may stand."""
 
 _OPTIONS = (

@@ -42,7 +42,7 @@ def plot_contact(contact: Contact) -> "Figure":
     from matplotlib.layout_engine import ConstrainedLayoutEngine
 
     refuse_other("contact", contact, Contact, "a softafm.Contact")
-    tip, surface, sample = contact.tip, contact.surface, contact.sample
+    tip, surface, sample = contact.tip, contact.surface, contact.rheology
     layout = ConstrainedLayoutEngine(wspace=0.07, hspace=0.05)
     figure = Figure(figsize=(12.6, 7.2), dpi=150, layout=layout)
     grid = figure.add_gridspec(2, 6)

@@ -68,7 +68,7 @@ def times_of(sample: Solid, measured: tuple | None = None) -> tuple[float, float
         return 1 / (2 * pi * measured[0][-1]), 1 / (2 * pi * measured[0][0])
     if isinstance(sample, Represented):
         return sample.window
-    compliance = sample.reduced_compliance
+    compliance = sample.compliance
     relaxation_times = chain_to_prony(*compliance)[2]
     times = np.append(compliance.retardation_times, relaxation_times)
     if not times.size:

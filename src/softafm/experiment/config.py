@@ -327,7 +327,7 @@ def _refuse_run(contact: Contact, solver: Any, run: schema.Run, document: Mappin
 
 def _refuse_flow(contact: Contact, mode: Mode, motion: Any, written: dict) -> None:
     """Raise ConfigError if cycles are to be steady on a sample that flows."""
-    if contact.sample.reduced_compliance.fluidity == 0:
+    if contact.body.compliance.fluidity == 0:
         return
     if mode.steady:
         raise ConfigError(
@@ -385,7 +385,7 @@ def build_table(name: str, document: Mapping[str, Any], mode: Mode | None, folde
     try:
         # Both are found when first asked for, and may not exist.
         if name == "sample":
-            _ = thing.reduced_compliance
+            _ = thing.compliance
         elif name == "surface" and thing.attracts:
             _ = thing.equilibrium_gap
     except ValueError as error:

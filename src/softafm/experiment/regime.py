@@ -179,8 +179,8 @@ def _add_regularisation(found: list[Row], experiment: "Experiment", contact: "Co
 
 def _add_sample(found: list[Row], contact: "Contact", duration: float, whole: str) -> None:
     """Tell how much the sample softens in the motion (s), and how."""
-    sample = contact.sample
-    creep = sample.reduced_compliance
+    sample = contact.rheology
+    creep = sample.compliance
     times = creep.retardation_times
     fast, late = (
         write_quantity(1 / float(sample.creep_compliance(t)), "Pa") for t in (0, duration)
@@ -196,31 +196,31 @@ def _add_sample(found: list[Row], contact: "Contact", duration: float, whole: st
             words += f"; the {whole} outlasts it: enlarge the window"
         elif duration < sample.window[0]:
             words += f"; the {whole} ends before: shift the window"
-        found.append(Row("represented by", _modes(sample.mode_count), words))
+        found.append(Row("represented by", _elements(sample.element_count), words))
     elif times.size > _FEW:
-        share = float(creep.modes @ -np.expm1(-duration / times) / creep.modes.sum())
+        share = float(creep.elements @ -np.expm1(-duration / times) / creep.elements.sum())
         ends = f"{write_quantity(times.min(), 's')} to {write_quantity(times.max(), 's')}"
         words = f"{ends}; {share:.2g} of their creep in the {whole}"
-        found.append(Row("creep times", _modes(times.size), words))
+        found.append(Row("creep times", _elements(times.size), words))
     else:
         for time in map(float, times):
             words = _creep_in_words(time / duration, whole)
             found.append(Row("creep time", write_quantity(time, "s"), words))
     if creep.fluidity:
-        viscosity = (1 - sample.poisson**2) / creep.fluidity
+        viscosity = 1 / creep.fluidity
         shear = viscosity / (2 * (1 + sample.poisson))
         words = f"in tension, {write_quantity(shear, 'Pa')} s in shear; flow without end"
-        words = "of the modes, beyond the window" if isinstance(sample, Represented) else words
+        words = "of the elements, beyond the window" if isinstance(sample, Represented) else words
         found.append(Row("viscosity", f"{write_quantity(viscosity, 'Pa')} s", words))
 
 
-def _modes(count: int) -> str:
-    return "1 mode" if count == 1 else f"{count} modes"
+def _elements(count: int) -> str:
+    return "1 element" if count == 1 else f"{count} elements"
 
 
 def _slow(contact: "Contact") -> str:
     """Tell which modulus stands for the long run."""
-    if contact.sample.reduced_compliance.fluidity:
+    if contact.body.compliance.fluidity:
         return f"at {write_quantity(contact.softened_modulus, 'Pa')} as flow sets in"
     return "slow"
 
@@ -235,7 +235,7 @@ def _add_lever(found: list[Row], contact: "Contact", lever: float, radius: float
         Row("steepest attraction", write_quantity(attraction, "N/m"), f"undeformed; {words}")
     )
     if radius:
-        stiffness = 2 * radius * contact.softened_modulus
+        stiffness = 2 * radius * contact.softened_modulus * contact.body.hardening(radius)
         share = stiffness / (stiffness + lever)
         words = f"2·E·a, {_slow(contact)}; lever bends by {share:.0%} of the way"
         found.append(Row("contact stiffness", write_quantity(stiffness, "N/m"), words))

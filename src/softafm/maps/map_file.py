@@ -164,7 +164,7 @@ def build_map(document: Mapping[str, Any], folder: Path) -> MapExperiment:
 def _refuse_flow(mode: str, materials: Sequence[Any]) -> None:
     """Raise ConfigError if a material that flows is to be tapped."""
     for index, each in enumerate(materials):
-        if mode == "tapping-map" and each.sample.reduced_compliance.fluidity > 0:
+        if mode == "tapping-map" and each.sample.compliance.fluidity > 0:
             raise ConfigError(
                 [
                     f"map.materials[{index}].sample: '{each.sample.kind}' flows, so that the tip "

@@ -264,7 +264,7 @@ def _assemble(sample, imaging, solver, tolerance, names, values, warned, done) -
             "flag_meanings": "attractive repulsive",
         }
     of_one = ("tabor_instantaneous", "tabor_relaxed", "cohesive_length")
-    for name in (*of_one, *describe_misfit(sample.materials[0].sample)):
+    for name in (*of_one, *describe_misfit(sample.materials[0].rheology)):
         del result.attrs[name]  # there is not one of them
     result.attrs["different_pixels"] = len(sample.pixels.contacts)
     return result
@@ -272,4 +272,4 @@ def _assemble(sample, imaging, solver, tolerance, names, values, warned, done) -
 
 def _describe(contact) -> dict:
     parts = {name: describe(getattr(contact, name)) for name in ("tip", "sample", "surface")}
-    return {**parts, **describe_misfit(contact.sample)}
+    return {**parts, **describe_misfit(contact.rheology)}

@@ -64,10 +64,11 @@ def deepest_tap(contact: Contact, drive: Drive, frequency: float, amplitudes) ->
     """
     amplitudes = np.asarray(amplitudes, float)
     mean_force = drive.strongest_push(amplitudes) / 2
-    compliance = contact.sample.reduced_compliance.relaxed
-    depth = np.sqrt(
-        4 * compliance * mean_force / np.sqrt(2 * contact.effective_radius / amplitudes)
-    )
+    compliance = contact.body.compliance.relaxed
+    squared = 4 * compliance * mean_force / np.sqrt(2 * contact.effective_radius / amplitudes)
+    # A body that is harder or softer than a half-space is so at the contact found there.
+    radius = np.sqrt(contact.effective_radius * np.sqrt(squared).max())
+    depth = np.sqrt(squared / contact.body.hardening(float(radius)))
     deepest = depth.argmax()
     amplitude = float(amplitudes[deepest])
     return Sine(amplitude - float(depth[deepest]), amplitude, frequency, "steady")

@@ -59,12 +59,12 @@ def doubt_window(contact, motion) -> tuple[AccuracyWarning, ...]:
 
     Such a sample has a ``window``, the times (s) over which a chain represents it.
     """
-    shortest, longest = getattr(contact.sample, "window", (0.0, float("inf")))
+    shortest, longest = getattr(contact.rheology, "window", (0.0, float("inf")))
     duration = float(motion.breaks[-1] - motion.breaks[0])
     if duration <= longest:
         return ()
     text = (
-        f"the motion lasts {duration:.3g} s, but the sample '{contact.sample.kind}' is "
+        f"the motion lasts {duration:.3g} s, but the sample '{contact.rheology.kind}' is "
         f"represented over window = ({shortest:g}, {longest:g}) s only: what it remembers for "
         f"longer is wrong; enlarge the window to {duration:.3g} s"
     )
@@ -99,7 +99,7 @@ def refuse_flow(contact, what: str, remedy: str) -> None:
 
     ``what`` needs a steady cycle; ``remedy`` is what to do instead.
     """
-    if contact.sample.reduced_compliance.fluidity > 0:
+    if contact.body.compliance.fluidity > 0:
         raise ValueError(
             f"{what}: the sample '{contact.sample.kind}' flows, so that the tip sinks deeper with "
             f"every cycle; {remedy}"

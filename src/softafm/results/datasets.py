@@ -133,8 +133,8 @@ def compute_edge_slowing(given, longer: float) -> float:
 
     That of an elastic one is none the slower for it, 1: no rate matters there.
     """
-    creep = given.sample.reduced_compliance
-    rate_matters = creep.modes.size > 0 or creep.fluidity > 0
+    creep = given.body.compliance
+    rate_matters = creep.elements.size > 0 or creep.fluidity > 0
     return (longer / given.surface.range) ** 2 if rate_matters else 1.0
 
 
@@ -164,7 +164,7 @@ def _collect_provenance(mode, contact, parts, solver, tolerance, warnings, diagn
         "tabor_instantaneous": contact.tabor_instantaneous,
         "tabor_relaxed": contact.tabor_relaxed,
         "cohesive_length": contact.cohesive_length,
-        **describe_misfit(contact.sample),
+        **describe_misfit(contact.rheology),
         "warnings": "\n".join(map(str, warnings)),
         **{f"solver_{name}": value for name, value in diagnostics.items()},
     }

@@ -1,11 +1,11 @@
 """Linear viscoelastic samples, each stated by its creep compliance.
 
 Every solid is written as a generalised Kelvin-Voigt chain,
-1/E(t) = 1/E0 + Σ J_m (1 − exp(−t/τ_m)) + φ t, in uniaxial compliance; the contact problem needs it
-times 1 − ν² (Rajabifar et al. 2021, equations 4 and 9).
+1/E(t) = 1/E0 + Σ J_m (1 − exp(−t/τ_m)) + φ t, in uniaxial compliance (Rajabifar et al. 2021,
+equation 4). What the contact problem needs of it is for the body under the tip to say.
 """
 
-from softafm.rheology.compliance import ReducedCompliance
+from softafm.rheology.compliance import CreepCompliance
 from softafm.rheology.dma import dma_misfit
 from softafm.rheology.dma_table import read_dma
 from softafm.rheology.elastic import Elastic
@@ -18,6 +18,7 @@ from softafm.rheology.solid import Solid
 from softafm.rheology.standard_linear_solid import StandardLinearSolid
 
 __all__ = [
+    "CreepCompliance",
     "Elastic",
     "FractionalStandardLinearSolid",
     "GeneralizedKelvinVoigt",
@@ -25,7 +26,6 @@ __all__ = [
     "KelvinVoigt",
     "Maxwell",
     "PowerLaw",
-    "ReducedCompliance",
     "Solid",
     "StandardLinearSolid",
     "chain_to_prony",

@@ -6,7 +6,7 @@ from typing import ClassVar
 import numpy as np
 
 from softafm.checks.validate import poisson_ratio, positive
-from softafm.rheology.compliance import ReducedCompliance
+from softafm.rheology.compliance import CreepCompliance
 from softafm.rheology.solid import Solid
 
 
@@ -36,6 +36,6 @@ class Elastic(Solid):
         object.__setattr__(self, "poisson", poisson_ratio(self.poisson))
 
     @property
-    def reduced_compliance(self) -> ReducedCompliance:
-        """(1 − ν²)/E, without modes."""
-        return ReducedCompliance((1 - self.poisson**2) / self.E, np.zeros(0), np.zeros(0))
+    def compliance(self) -> CreepCompliance:
+        """1/E, without elements."""
+        return CreepCompliance(1 / self.E, np.zeros(0), np.zeros(0))

@@ -17,7 +17,7 @@ class FractionalStandardLinearSolid(Represented):
     """Broad transition between two moduli, 1/E*(ω) = 1/E0 + (1/E_inf − 1/E0)/(1 + (iωτ)^a).
 
     Cole and Cole's law, here of the compliance. Solvers need a discrete spectrum, so it is
-    represented by as few Kelvin-Voigt modes as keep ``error`` over ``window``; creep, relaxation
+    represented by as few Kelvin-Voigt elements as keep ``error`` over ``window``; creep, relaxation
     and moduli are those of this chain, and ``represented_error`` says how close it is. Where the
     window does not reach E0 or E_inf, neither need the chain.
 
@@ -41,7 +41,7 @@ class FractionalStandardLinearSolid(Represented):
     ------
     ValueError
         If a value is out of range or E_inf > E0; and, when the chain is first needed, if it has
-        too many modes.
+        too many elements.
 
     References
     ----------

@@ -55,7 +55,7 @@ def chain_to_prony(
     instantaneous
         J_g > 0, 1/Pa.
     compliances, retardation_times
-        J_m ≥ 0 (1/Pa) and τ_m > 0 (s), shape (m,), in any order; modes of equal times are added.
+        J_m ≥ 0 (1/Pa) and τ_m > 0 (s), shape (m,), in any order; elements of equal times are added.
     fluidity
         φ ≥ 0, 1/(Pa s).
 

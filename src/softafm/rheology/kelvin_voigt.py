@@ -6,7 +6,7 @@ from typing import ClassVar
 import numpy as np
 
 from softafm.checks.validate import poisson_ratio, positive
-from softafm.rheology.compliance import ReducedCompliance
+from softafm.rheology.compliance import CreepCompliance
 from softafm.rheology.lists import as_many, positives
 from softafm.rheology.solid import Solid
 
@@ -75,10 +75,10 @@ class KelvinVoigt(Solid):
         return cls(2 * (1 + poisson_ratio(poisson)) * G, viscosity / G, poisson)
 
     @property
-    def reduced_compliance(self) -> ReducedCompliance:
-        """One mode, J_1 = (1 − ν²)/E, and an instantaneous part of 1e-6 of it."""
-        mode = (1 - self.poisson**2) / self.E
-        return ReducedCompliance(mode / STIFF, np.array([mode]), np.array([self.creep_time]))
+    def compliance(self) -> CreepCompliance:
+        """One element, J_1 = 1/E, and an instantaneous part of 1e-6 of it."""
+        element = 1 / self.E
+        return CreepCompliance(element / STIFF, np.array([element]), np.array([self.creep_time]))
 
 
 @dataclass(frozen=True)
@@ -90,7 +90,7 @@ class GeneralizedKelvinVoigt(Solid):
     E0
         Short-term Young's modulus, Pa.
     compliances
-        Uniaxial compliances J_m, 1/Pa; the factor 1 − ν² is applied inside.
+        Uniaxial compliances J_m, 1/Pa, without the factor 1 − ν².
     retardation_times
         Times τ_m, s, as many as compliances.
     poisson
@@ -118,11 +118,10 @@ class GeneralizedKelvinVoigt(Solid):
         as_many("retardation_times", times, "compliances", compliances)
 
     @property
-    def reduced_compliance(self) -> ReducedCompliance:
-        """(1 − ν²) times the uniaxial chain."""
-        factor = 1 - self.poisson**2
-        return ReducedCompliance(
-            factor / self.E0,
-            factor * np.array(self.compliances, float),
+    def compliance(self) -> CreepCompliance:
+        """The chain itself."""
+        return CreepCompliance(
+            1 / self.E0,
+            np.array(self.compliances, float),
             np.array(self.retardation_times, float),
         )

@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike
 
 from softafm.checks.validate import finite, poisson_ratio, positive
 from softafm.errors import AccuracyWarning
-from softafm.rheology.compliance import ReducedCompliance
+from softafm.rheology.compliance import CreepCompliance
 from softafm.rheology.dma import dma_misfit, warn_of_misfit
 from softafm.rheology.interconversion import prony_to_chain
 from softafm.rheology.lists import as_many, positives
@@ -81,10 +81,10 @@ class Maxwell(Solid):
         return cls(2 * (1 + poisson_ratio(poisson)) * G0, viscosity / G0, poisson)
 
     @property
-    def reduced_compliance(self) -> ReducedCompliance:
-        """No mode, but steady flow: φ = (1 − ν²)/(E0 λ)."""
-        factor = (1 - self.poisson**2) / self.E0
-        return ReducedCompliance(factor, np.zeros(0), np.zeros(0), factor / self.relaxation_time)
+    def compliance(self) -> CreepCompliance:
+        """No element, but steady flow: φ = 1/(E0 λ)."""
+        spring = 1 / self.E0
+        return CreepCompliance(spring, np.zeros(0), np.zeros(0), spring / self.relaxation_time)
 
 
 @dataclass(frozen=True)
@@ -224,10 +224,6 @@ class GeneralizedMaxwell(Solid):
         return sample
 
     @cached_property
-    def reduced_compliance(self) -> ReducedCompliance:
-        """(1 − ν²) times the exact creep compliance of the series."""
-        instantaneous, modes, times, fluidity = prony_to_chain(
-            self.E_inf, self.moduli, self.relaxation_times
-        )
-        factor = 1 - self.poisson**2
-        return ReducedCompliance(factor * instantaneous, factor * modes, times, factor * fluidity)
+    def compliance(self) -> CreepCompliance:
+        """The exact creep compliance of the series."""
+        return CreepCompliance(*prony_to_chain(self.E_inf, self.moduli, self.relaxation_times))

@@ -16,8 +16,8 @@ from softafm.rheology.series import Response, error_of
 class PowerLaw(Represented):
     """Power-law relaxation E(t) = E1 (t/t0)^−a, as of a springpot σ = V d^a ε/dt^a.
 
-    Solvers need a discrete spectrum, so the law is represented by as few Kelvin-Voigt modes as keep
-    ``error`` over ``window``; creep, relaxation and moduli are those of this chain, and
+    Solvers need a discrete spectrum, so the law is represented by as few Kelvin-Voigt elements as
+    keep ``error`` over ``window``; creep, relaxation and moduli are those of this chain, and
     ``represented_error`` says how close it is. The chain is elastic at times shorter than the
     window, and flows at longer ones.
 
@@ -40,7 +40,8 @@ class PowerLaw(Represented):
     Raises
     ------
     ValueError
-        If a value is out of range; and, when the chain is first needed, if it has too many modes.
+        If a value is out of range; and, when the chain is first needed, if it has too many
+        elements.
 
     References
     ----------

@@ -1,4 +1,4 @@
-"""Samples of a continuous spectrum, represented by few modes over the times of an experiment."""
+"""Samples of a continuous spectrum, represented by few elements over the times of an experiment."""
 
 from abc import abstractmethod
 from functools import cached_property
@@ -7,10 +7,11 @@ from math import pi
 import numpy as np
 from numpy.typing import ArrayLike
 
+from softafm.checks.deprecated import Renamed
 from softafm.checks.validate import finite
-from softafm.rheology.compliance import ReducedCompliance
+from softafm.rheology.compliance import CreepCompliance
 from softafm.rheology.lists import samples
-from softafm.rheology.series import Response, Series, fewest_modes
+from softafm.rheology.series import Response, Series, fewest_elements
 from softafm.rheology.solid import Solid
 
 
@@ -43,7 +44,7 @@ class Represented(Solid):
 
     @cached_property
     def _series(self) -> Series:
-        return fewest_modes(self._response, self.window, self.error)
+        return fewest_elements(self._response, self.window, self.error)
 
     @property
     def represented_error(self) -> float:
@@ -51,21 +52,22 @@ class Represented(Solid):
         return self._series.error
 
     @property
-    def mode_count(self) -> int:
-        """Number of modes that a solver carries, steady flow included."""
+    def element_count(self) -> int:
+        """Number of elements that a solver carries, steady flow included."""
         chain = self._series.compliance
-        return chain.modes.size + (chain.fluidity > 0)
+        return chain.elements.size + (chain.fluidity > 0)
+
+    mode_count = Renamed("element_count", "0.2.0 of 2026-11-30", "0.4.0")
 
     @cached_property
-    def reduced_compliance(self) -> ReducedCompliance:
-        """(1 − ν²) times the chain that stands for the law."""
-        factor = (1 - self.poisson**2) * self._scale
+    def compliance(self) -> CreepCompliance:
+        """The chain that stands for the law."""
         time, chain = self.window[0], self._series.compliance
-        return ReducedCompliance(
-            factor * chain.instantaneous,
-            factor * chain.modes,
+        return CreepCompliance(
+            self._scale * chain.instantaneous,
+            self._scale * chain.elements,
             time * chain.retardation_times,
-            factor * chain.fluidity / time,
+            self._scale * chain.fluidity / time,
         )
 
     def exact_creep_compliance(self, time: ArrayLike) -> np.ndarray:

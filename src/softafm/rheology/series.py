@@ -1,4 +1,4 @@
-"""The fewest Kelvin-Voigt modes that stand for a continuous spectrum over a window of times."""
+"""The fewest Kelvin-Voigt elements that stand for a continuous spectrum over a window of times."""
 
 from collections.abc import Hashable
 from functools import lru_cache
@@ -8,9 +8,9 @@ from typing import NamedTuple, Protocol
 import numpy as np
 
 from softafm.checks.validate import finite
-from softafm.rheology.compliance import ReducedCompliance
+from softafm.rheology.compliance import CreepCompliance
 
-MOST_MODES = 40
+MOST_ELEMENTS = 40
 _WIDEST = 1e60
 _FITTED, _MEASURED = 12, 60
 """Samples a decade where a series is fitted, and where its error is measured."""
@@ -37,7 +37,7 @@ class Response(Hashable, Protocol):
 class Series(NamedTuple):
     """A chain and its largest relative error in the window."""
 
-    compliance: ReducedCompliance
+    compliance: CreepCompliance
     error: float
 
 
@@ -49,8 +49,8 @@ def error_of(value: float) -> float:
     return number
 
 
-def fewest_modes(response: Response, window: tuple[float, float], error: float) -> Series:
-    """Return the chain of the fewest modes that keeps ``error`` over a window.
+def fewest_elements(response: Response, window: tuple[float, float], error: float) -> Series:
+    """Return the chain of the fewest elements that keeps ``error`` over a window.
 
     The error is the largest relative deviation of the creep compliance at times in the window, and
     of the complex compliance at ω between their inverses. The chain has times, as the response, in
@@ -59,7 +59,7 @@ def fewest_modes(response: Response, window: tuple[float, float], error: float) 
     Raises
     ------
     ValueError
-        If more than 40 modes were needed.
+        If more than 40 elements were needed.
     """
     shortest, longest = window
     ratio = longest / shortest
@@ -67,14 +67,14 @@ def fewest_modes(response: Response, window: tuple[float, float], error: float) 
     if series is None:
         raise ValueError(
             f"error = {error:g} over window = ({shortest:g}, {longest:g}) s needs more than "
-            f"{MOST_MODES} modes: must be larger, or the window shorter"
+            f"{MOST_ELEMENTS} elements: must be larger, or the window shorter"
         )
     return series
 
 
 @lru_cache(maxsize=64)
 def _fewest(response: Response, longest: float, error: float) -> Series | None:
-    """Return the chain of the fewest modes that keeps ``error`` from time 1 to ``longest``.
+    """Return the chain of the fewest elements that keeps ``error`` from time 1 to ``longest``.
 
     Modes start at equal ratios with weights by non-negative least squares, and move freely by least
     squares whose emphasis shifts to where the error is largest until it is level (Lawson 1961).
@@ -85,11 +85,11 @@ def _fewest(response: Response, longest: float, error: float) -> Series | None:
         logs = _levelled(coarse, _equally_spaced(coarse, count))
         return Series(fine.compliance(logs), fine.error(logs))
 
-    # Equal spacing h in ln τ leaves a ripple of some 2 exp(−π²/h); two modes more for the ends.
+    # Equal spacing h in ln τ leaves a ripple of some 2 exp(−π²/h); two elements more for the ends.
     count = ceil(log(longest) * log(2 / error) / pi**2) + 2
-    count = min(count, MOST_MODES)
+    count = min(count, MOST_ELEMENTS)
     best = levelled(count)
-    while best.error > error and count < MOST_MODES:
+    while best.error > error and count < MOST_ELEMENTS:
         count += 1
         best = levelled(count)
     if best.error > error:
@@ -104,7 +104,7 @@ def _fewest(response: Response, longest: float, error: float) -> Series | None:
 
 
 class _Samples:
-    """Relative contributions of modes to the exact response at samples of the window.
+    """Relative contributions of elements to the exact response at samples of the window.
 
     A chain is given by logarithms: of J_g, of J_m, of φ if it flows, and of τ_m.
     """
@@ -135,8 +135,8 @@ class _Samples:
         weights, times = self.split(logs)
         ratio, lag = self.time / times, self.s * times
         of_times = self.scale * np.vstack([-lag / (1 + lag) ** 2, -ratio * np.exp(-ratio)])
-        modes = weights[1 : times.size + 1]
-        return np.hstack([self.columns(times) * weights, of_times * modes])
+        elements = weights[1 : times.size + 1]
+        return np.hstack([self.columns(times) * weights, of_times * elements])
 
     def split(self, logs: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Return weights and times."""
@@ -154,17 +154,17 @@ class _Samples:
         """Return the largest relative deviation."""
         return float(np.max(np.abs(self.residual(logs))))
 
-    def compliance(self, logs: np.ndarray) -> ReducedCompliance:
+    def compliance(self, logs: np.ndarray) -> CreepCompliance:
         """Return the chain itself, by rising times."""
         weights, times = self.split(logs)
         order = np.argsort(times)
         fluidity = float(weights[-1]) if self.flows else 0.0
-        modes = weights[1 : times.size + 1]
-        return ReducedCompliance(float(weights[0]), modes[order], times[order], fluidity)
+        elements = weights[1 : times.size + 1]
+        return CreepCompliance(float(weights[0]), elements[order], times[order], fluidity)
 
 
 def _equally_spaced(samples: _Samples, count: int) -> np.ndarray:
-    """Return a chain of modes at equal ratios, weighed by non-negative least squares."""
+    """Return a chain of elements at equal ratios, weighed by non-negative least squares."""
     from scipy.optimize import nnls
 
     ends = 0.5 / count if count == 1 else 0.0
@@ -179,7 +179,7 @@ def _equally_spaced(samples: _Samples, count: int) -> np.ndarray:
 
 
 def _levelled(samples: _Samples, logs: np.ndarray) -> np.ndarray:
-    """Return the chain of as many modes whose largest error is least, or nearly so.
+    """Return the chain of as many elements whose largest error is least, or nearly so.
 
     Levenberg-Marquardt steps in the logarithms, and after every third a shift of emphasis.
     """

@@ -6,7 +6,7 @@ from typing import ClassVar
 import numpy as np
 
 from softafm.checks.validate import poisson_ratio, positive
-from softafm.rheology.compliance import ReducedCompliance
+from softafm.rheology.compliance import CreepCompliance
 from softafm.rheology.solid import Solid
 
 
@@ -82,10 +82,9 @@ class StandardLinearSolid(Solid):
         return cls(factor * G0, factor * G_inf, creep_time, poisson)
 
     @property
-    def reduced_compliance(self) -> ReducedCompliance:
-        """One mode, J_1 = (1 − ν²)(1/E_inf − 1/E0); none when the moduli are equal."""
-        factor = 1 - self.poisson**2
+    def compliance(self) -> CreepCompliance:
+        """One element, J_1 = 1/E_inf − 1/E0; none when the moduli are equal."""
         if self.E_inf == self.E0:
-            return ReducedCompliance(factor / self.E0, np.zeros(0), np.zeros(0))
-        mode = factor * (1 / self.E_inf - 1 / self.E0)
-        return ReducedCompliance(factor / self.E0, np.array([mode]), np.array([self.creep_time]))
+            return CreepCompliance(1 / self.E0, np.zeros(0), np.zeros(0))
+        element = 1 / self.E_inf - 1 / self.E0
+        return CreepCompliance(1 / self.E0, np.array([element]), np.array([self.creep_time]))

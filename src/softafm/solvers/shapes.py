@@ -4,7 +4,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from softafm.halfspace.mesh import node_index
+from softafm.bodies.mesh import node_index
 from softafm.solvers.history import Profiles
 
 
@@ -19,7 +19,7 @@ class Shape(NamedTuple):
 def on_common_radii(shapes: list[Shape]) -> Profiles:
     """Interpolate shapes by quintic splines to 301 radii out to thrice the widest frame.
 
-    Beyond its mesh a surface falls off as 1/r.
+    Beyond its mesh a surface falls off as 1/r, or as its body says.
     """
     from scipy.interpolate import make_interp_spline
 
@@ -31,6 +31,7 @@ def on_common_radii(shapes: list[Shape]) -> Profiles:
         spline = make_interp_spline(np.arange(-last, last + 1), mirrored, k=5)
         index = node_index(radius / frame, mesh.edge_spacing, mesh.growth)
         end = frame * mesh.nodes[-1]
-        beyond = values[-1] * end / np.fmax(radius, end)
+        outside = np.fmax(radius, end)
+        beyond = values[-1] * end / outside * np.exp(-mesh.decay * (outside - end))
         row[:] = np.where(index <= last, spline(np.minimum(index, last)), beyond)
     return Profiles(radius, deformation)

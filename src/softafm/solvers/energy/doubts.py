@@ -8,7 +8,13 @@ from softafm.solvers.energy.tuning import COARSER_THAN_NEEDED, SHARPEST, SLACKES
 
 def list_doubts(run) -> tuple[AccuracyWarning, ...]:
     """Return the warnings that a finished run deserves."""
-    return (*_unsteady(run), *_too_coarse(run), *_too_slack(run), *_too_sharp(run))
+    return (
+        *_doubt_steadiness(run),
+        *_doubt_coarseness(run),
+        *_doubt_slackness(run),
+        *_doubt_sharpness(run),
+        *_doubt_width(run),
+    )
 
 
 def suggest_longer_range(contact) -> str:
@@ -17,7 +23,7 @@ def suggest_longer_range(contact) -> str:
     return f"; its Tabor number is {tabor:.3g}: try regularise=8" if tabor > 30 else ""
 
 
-def _unsteady(run) -> tuple[AccuracyWarning, ...]:
+def _doubt_steadiness(run) -> tuple[AccuracyWarning, ...]:
     if run.unsteady <= run.steadiness:
         return ()
     text = (
@@ -28,7 +34,7 @@ def _unsteady(run) -> tuple[AccuracyWarning, ...]:
     return (AccuracyWarning(text, run.unsteady),)
 
 
-def _too_coarse(run) -> tuple[AccuracyWarning, ...]:
+def _doubt_coarseness(run) -> tuple[AccuracyWarning, ...]:
     coarseness, edge = run.coarsest
     if coarseness <= COARSER_THAN_NEEDED * run.target:
         return ()
@@ -52,7 +58,7 @@ def _too_coarse(run) -> tuple[AccuracyWarning, ...]:
     return (AccuracyWarning(text, coarseness / run.target),)
 
 
-def _too_slack(run) -> tuple[AccuracyWarning, ...]:
+def _doubt_slackness(run) -> tuple[AccuracyWarning, ...]:
     tabor = run.contact.tabor_instantaneous
     if not run.contact.adhesive or tabor <= SLACKEST or len(run.falls) < 2:
         return ()
@@ -65,7 +71,7 @@ def _too_slack(run) -> tuple[AccuracyWarning, ...]:
     return (AccuracyWarning(text, tabor),)
 
 
-def _too_sharp(run) -> tuple[AccuracyWarning, ...]:
+def _doubt_sharpness(run) -> tuple[AccuracyWarning, ...]:
     law = run.contact.surface
     if not run.contact.adhesive or law.sharpness <= SHARPEST:
         return ()
@@ -75,3 +81,16 @@ def _too_sharp(run) -> tuple[AccuracyWarning, ...]:
         "edge may catch on the nodes, and forces be off by several per cent. Smooth the law"
     )
     return (AccuracyWarning(text, law.sharpness),)
+
+
+def _doubt_width(run) -> tuple[AccuracyWarning, ...]:
+    body = run.contact.body
+    widest = float(run.records["frame"][: run.count].max(initial=0.0))
+    if widest <= body.widest:
+        return ()
+    text = (
+        f"the contact and what acts around it reach to {widest:.3g} m, and on the body "
+        f"'{body.kind}' the mesh is good for contacts of up to {body.widest:.3g} m: forces and "
+        "energies may be wrong. Indent less, or take a sharper tip"
+    )
+    return (AccuracyWarning(text, widest / body.widest),)

@@ -1,6 +1,6 @@
 """Frames of the energy solver: fields moved between meshes, and the ride on the contact edge."""
 
-from math import asinh, floor, log, sqrt
+from math import asinh, exp, floor, log, sqrt
 
 import numpy as np
 from numba import float64
@@ -46,9 +46,9 @@ def _interpolate(fields, index, weights, out):
             )
 
 
-@compile_for((MATRIX, float64, float64, CONSTANT_VECTOR, MATRIX))
-def _fade(fields, end, stretch, nodes, out):
-    """Continue fields beyond the ``end`` of their mesh as 1/r."""
+@compile_for((MATRIX, float64, float64, float64, CONSTANT_VECTOR, MATRIX))
+def _fade(fields, end, decay, stretch, nodes, out):
+    """Continue fields beyond the ``end`` of their mesh as e^(−decay·r)/r, in units of its frame."""
     last = fields.shape[1] - 1
     for i in range(nodes.size - 1, -1, -1):
         r = nodes[i] * stretch
@@ -56,27 +56,30 @@ def _fade(fields, end, stretch, nodes, out):
             break
         for m in range(fields.shape[0]):
             out[m, i] = fields[m, last] * end / r
+            if decay > 0.0:
+                out[m, i] *= exp(-decay * (r - end))
 
 
-@compile_for((MATRIX, float64, float64, float64, float64, CONSTANT_VECTOR, MATRIX, MATRIX))
-def transfer(fields, end, edge_spacing, growth, stretch, nodes, work, out):
+@compile_for((MATRIX, float64, float64, float64, float64, float64, CONSTANT_VECTOR, MATRIX, MATRIX))
+def transfer(fields, end, edge_spacing, growth, decay, stretch, nodes, work, out):
     """Evaluate displacement fields of one mesh at radii ``stretch``·``nodes`` of another.
 
     ``fields`` (m, n) live on a mesh of this ``edge_spacing`` and ``growth`` whose last node is
     ``end``. They are smooth and even in the node index; beyond the last node they are those of a
-    concentrated load, 1/r. ``work`` (7, ...) is worked in.
+    concentrated load, e^(−decay·r)/r with the ``decay`` of the body in their frame, 0 on a
+    half-space. ``work`` (7, ...) is worked in.
     """
     scale = growth / edge_spacing
     for i in range(nodes.size):
         r = nodes[i] * stretch
         work[0, i] = (asinh(scale * (r - 1.0)) + asinh(scale * (r + 1.0))) / growth
     _interpolate(fields, work[0, : nodes.size], work[1:], out)
-    _fade(fields, end, stretch, nodes, out)
+    _fade(fields, end, decay, stretch, nodes, out)
 
 
-@compile_for((MATRIX, MESH, float64, MATRIX, MATRIX))
-def reframe(fields, mesh, stretch, work, out):
-    """As ``transfer``, to a frame ``stretch`` times larger on the same mesh.
+@compile_for((MATRIX, MESH, float64, float64, MATRIX, MATRIX))
+def reframe(fields, mesh, frame, stretch, work, out):
+    """As ``transfer``, from a ``frame``, m, to one ``stretch`` times larger on the same mesh.
 
     Half the change of an asinh is artanh((y − x)/(√(1 + x²) + √(1 + y²))); so is the sum of those
     of both in the index of a node, by a series if it is small, to 1e-10.
@@ -105,7 +108,7 @@ def reframe(fields, mesh, stretch, work, out):
         for i in range(n):
             index[i] = i + 0.5 * halves * log((1.0 + index[i]) / (1.0 - index[i]))
     _interpolate(fields, index, work[1:], out)
-    _fade(fields, mesh.nodes[n - 1], stretch, mesh.nodes, out)
+    _fade(fields, mesh.nodes[n - 1], frame * mesh.decay, stretch, mesh.nodes, out)
 
 
 @compile_for(float64(VECTOR, CONSTANT_VECTOR, float64))

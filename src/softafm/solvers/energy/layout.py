@@ -1,7 +1,7 @@
 """What the compiled loops of the energy solver work on, and the types that numba knows it by.
 
 Lengths in m, pressures in Pa, times in s. The surface is known on nodes r_i = a ξ_i of a unit mesh
-(softafm.halfspace.mesh) in a frame of radius a that follows the contact edge. Memory is carried as
+(softafm.bodies.mesh) in a frame of radius a that follows the contact edge. Memory is carried as
 displacements: q = K p and y_m = K w_m with τ_m ẏ_m = q − y_m, so that u = −(J_g q + Σ J_m y_m), and
 a change of frame is an interpolation of smooth fields.
 """
@@ -11,6 +11,7 @@ from typing import NamedTuple
 import numpy as np
 from numba import float64, from_dtype, types
 
+from softafm.bodies.mesh import UnitMesh
 from softafm.compiled.functions import CompiledFunction
 
 VECTOR = float64[::1]
@@ -19,7 +20,7 @@ CONSTANT_VECTOR = types.Array(float64, 1, "C", readonly=True)
 CONSTANT_MATRIX = types.Array(float64, 2, "C", readonly=True)
 
 # Why `advance` came back.
-FINISHED, FULL, REMESH, FALL, STUCK, TRIGGERED = range(6)
+FINISHED, FULL, REMESH, FALL, STUCK, TRIGGERED, TABULATE = range(7)
 
 # Rows of `fields`: the last three shapes, the load q before and now, then one per element y_m.
 DEFORMATION, EARLIER, EARLIEST, LOAD_EARLIER, LOAD, MEMORY = range(6)
@@ -46,6 +47,7 @@ CLOCK_FIELDS = record(
     "history",  # number of past shapes fit for extrapolation
     "tries",  # attempted steps so far
     "newtons",  # iterations of Newton's method so far
+    "wanted",  # radius of a frame whose stiffness is to be tabulated, m
     # How large a second correction of Newton's was for the square of the first; 0 if that is not
     # known, inf if it is no guide.
     "contraction",
@@ -67,7 +69,7 @@ RECORD_FIELDS = record(
 
 
 class Mesh(NamedTuple):
-    """A ``softafm.halfspace.mesh.UnitMesh`` as the kernels take it."""
+    """A ``softafm.bodies.mesh.UnitMesh`` as the kernels take it, with the stiffness on it."""
 
     nodes: np.ndarray
     masses: np.ndarray
@@ -77,6 +79,28 @@ class Mesh(NamedTuple):
     far: np.ndarray
     far_masses: np.ndarray
     slopes: np.ndarray
+    decay: float
+
+
+def mesh_of(mesh: UnitMesh, stiffness: np.ndarray, decay: float) -> Mesh:
+    """Return a mesh with the stiffness and the ``decay``, 1/m, of a body, for the kernels."""
+    return Mesh(
+        mesh.nodes, mesh.masses, stiffness, mesh.edge_spacing, mesh.growth, mesh.far,
+        mesh.far_masses, mesh.slopes, decay,
+    )  # fmt: skip
+
+
+class Table(NamedTuple):
+    """Stiffness of a body on a mesh in some frames, from which that of others is interpolated.
+
+    ``entries`` (k, n, n) are those of the frames e^(``start`` + i ``step``), m. What is ``found``
+    (n, n) is what the mesh has for its stiffness; of shape (0, 0) if all frames are alike.
+    """
+
+    entries: np.ndarray
+    start: float
+    step: float
+    found: np.ndarray
 
 
 class Functions(NamedTuple):
@@ -106,7 +130,7 @@ class Background(NamedTuple):
     """Memory from before ``since``, s, which only fades: y_m = values_m e^(−(t − since)/τ_m).
 
     ``values`` (elements, nodes), or none, live on a mesh of this edge spacing and growth that ends
-    at ``end`` in a frame of radius ``frame``, m.
+    at ``end`` in a frame of radius ``frame``, m, and fall by the ``decay`` of the body beyond.
     """
 
     values: np.ndarray
@@ -114,6 +138,7 @@ class Background(NamedTuple):
     end: float
     edge_spacing: float
     growth: float
+    decay: float
     since: float
 
 
@@ -163,12 +188,13 @@ class Room(NamedTuple):
 MESH = types.NamedTuple(
     (
         CONSTANT_VECTOR, CONSTANT_VECTOR, CONSTANT_MATRIX, float64, float64,
-        CONSTANT_VECTOR, CONSTANT_VECTOR, CONSTANT_MATRIX,
+        CONSTANT_VECTOR, CONSTANT_VECTOR, CONSTANT_MATRIX, float64,
     ),
     Mesh,
 )  # fmt: skip
 PARAMETERS = types.NamedUniTuple(VECTOR, len(Parameters._fields), Parameters)
-BACKGROUND = types.NamedTuple((MATRIX, float64, float64, float64, float64, float64), Background)
+TABLE = types.NamedTuple((float64[:, :, ::1], float64, float64, MATRIX), Table)
+BACKGROUND = types.NamedTuple((MATRIX, *[float64] * 6), Background)
 CONTROLS = types.NamedUniTuple(float64, len(Controls._fields), Controls)
 CLOCK = from_dtype(CLOCK_FIELDS)
 ROOM = types.NamedUniTuple(MATRIX, len(Room._fields), Room)

@@ -66,7 +66,7 @@ def recall(background, time, frame, retardation, nodes, work, memory):
         return
     transfer(
         background.values, background.end, background.edge_spacing, background.growth,
-        frame / background.frame, nodes, work, memory,
+        background.decay, frame / background.frame, nodes, work, memory,
     )  # fmt: skip
     for m in range(elements):
         fading = exp(-(time - background.since) / retardation[m])

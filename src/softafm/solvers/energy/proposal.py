@@ -10,7 +10,7 @@ from softafm.compiled.functions import (
     inlined,
 )
 from softafm.solvers.energy.equilibrium import raise_tip, spring_constant
-from softafm.solvers.energy.frame import following_frame, reframe
+from softafm.solvers.energy.frame import reframe
 from softafm.solvers.energy.layout import (
     CLOCK,
     DEFORMATION,
@@ -129,26 +129,28 @@ def predict(frame, step, history, fields, clock, mesh, weights, guess, work, sha
     for k in range(history):
         riding = max(frame - speed * ago[k], SMALLEST_FRAME * frame)
         row = DEFORMATION + k
-        reframe(fields[row : row + 1], mesh, riding / frames[k], work, shape)
+        reframe(fields[row : row + 1], mesh, frames[k], riding / frames[k], work, shape)
         for i in range(n):
             guess[i] += weights[k] * shape[0, i]
 
 
 @inlined
 def propose(
-    step, height, profile, respond, parameters, background, mesh, controls, fields, clock,
+    step, frame, height, profile, respond, parameters, background, mesh, fields, clock,
     lever_state, work,
 ):  # fmt: skip
     """Move the past to the frame of a step, and guess the shape at its end: ``work.u``."""
     n, elements = mesh.nodes.size, parameters.retardation.size
     history = int(clock.history)
-    frame = following_frame(step, clock, mesh, controls)
     stretch = frame / clock.frame
-    reframe(fields[LOAD : MEMORY + elements], mesh, stretch, work.shifting, work.past)
+    reframe(fields[LOAD : MEMORY + elements], mesh, clock.frame, stretch, work.shifting, work.past)
     order = min(history, 2)
     if order == 2:
         earlier = frame / clock.frame_earlier
-        reframe(fields[LOAD_EARLIER:LOAD], mesh, earlier, work.shifting, work.load_earlier)
+        reframe(
+            fields[LOAD_EARLIER:LOAD], mesh, clock.frame_earlier, earlier, work.shifting,
+            work.load_earlier,
+        )  # fmt: skip
     else:
         for i in range(n):
             work.load_earlier[0, i] = 0.0

@@ -17,6 +17,7 @@ from softafm.solvers.energy.layout import (
     RECORD_FIELDS,
     REMESH,
     STUCK,
+    TABULATE,
     TRIGGERED,
     Controls,
 )
@@ -195,9 +196,12 @@ class Run:
         shapes = np.empty((0 if self.shapes is None else _CHUNK, surface.mesh.nodes.size))
         outcome, count = advance(
             *surface.functions[:-1], surface.parameters, surface.background, surface.mesh,
-            controls, surface.fields, surface.clock, surface.lever_state, records, shapes,
-            surface.room(),
+            surface.table, controls, surface.fields, surface.clock, surface.lever_state, records,
+            shapes, surface.room(),
         )  # fmt: skip
+        if outcome == TABULATE:
+            surface.tabulate(float(surface.clock["wanted"]))
+            outcome = FULL
         return outcome, records[:count], shapes[:count]
 
     def _free_records(self) -> np.ndarray:

@@ -124,6 +124,6 @@ def cohesive_lengths_crossed(contact, motion) -> float:
     modulus = contact.softened_modulus
     if not is_steady(motion):
         duration = float(motion.breaks[-1] - motion.breaks[0])
-        modulus = max(modulus, 1 / float(contact.sample.reduced_compliance.at(duration)))
+        modulus = max(modulus, 1 / float(contact.body.compliance.at(duration)))
     length = modulus * law.range**2 / law.work_of_adhesion
     return 2 * radius / length * count_periods(motion)

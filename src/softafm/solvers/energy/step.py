@@ -18,7 +18,7 @@ from softafm.compiled.functions import (
     pointer,
 )
 from softafm.solvers.energy.equilibrium import equilibrate, tip_force
-from softafm.solvers.energy.frame import radius_of_gap
+from softafm.solvers.energy.frame import following_frame, radius_of_gap
 from softafm.solvers.energy.layout import (
     BACKGROUND,
     CLOCK,
@@ -39,6 +39,8 @@ from softafm.solvers.energy.layout import (
     REMESH,
     ROOM,
     STUCK,
+    TABLE,
+    TABULATE,
     TRIGGERED,
     VECTOR,
 )  # fmt: skip
@@ -48,6 +50,7 @@ from softafm.solvers.energy.memory import (
     dissipated_power,
 )  # fmt: skip
 from softafm.solvers.energy.proposal import choose_step, furnish, propose
+from softafm.solvers.energy.stiffness import find_stiffness
 from softafm.solvers.energy.tuning import (
     AT_TRIGGER,
     CLOSEST,
@@ -163,16 +166,17 @@ def move_clock(clock, step, frame, edge, force, deflection):
 @compile_for(
     types.UniTuple(int64, 2)(
         pointer(HEIGHT), pointer(PROFILE), pointer(PRESSURE), pointer(RESPONSE),
-        pointer(ACCEPTANCE), PARAMETERS, BACKGROUND, MESH, CONTROLS, MATRIX, CLOCK, VECTOR,
+        pointer(ACCEPTANCE), PARAMETERS, BACKGROUND, MESH, TABLE, CONTROLS, MATRIX, CLOCK, VECTOR,
         RECORDS, MATRIX, ROOM,
     ),
 )  # fmt: skip
 def advance(
-    height, profile, law, respond, accept_force, parameters, background, mesh, controls, fields,
-    clock, lever_state, records, shapes, room,
+    height, profile, law, respond, accept_force, parameters, background, mesh, table, controls,
+    fields, clock, lever_state, records, shapes, room,
 ):  # fmt: skip
-    """Step the surface in time until ``controls.end``, full records, a need to remesh, or FALL: no
-    stable shape within the shortest step, which is not taken.
+    """Step the surface in time until ``controls.end``, full records, a need to remesh, TABULATE: a
+    frame is wanted whose stiffness the table does not reach, or FALL: no stable shape within the
+    shortest step, which is not taken.
 
     ``fields`` (MEMORY + elements, n), ``clock`` and ``lever_state`` hold the state and are updated,
     by accepted steps only. Every accepted step
@@ -182,17 +186,23 @@ def advance(
     n = mesh.nodes.size
     work = furnish(room)
     shortest = controls.shortest_step
-    count = 0
+    count, tabulated = 0, 0.0
     while count < records.size:
         left = controls.end - clock.time
         if left <= 0.0:
             return FINISHED, count
         if clock.tries >= controls.most_tries:
             return STUCK, count
-        clock.tries += 1
         step = choose_step(clock, controls, left)
+        frame = following_frame(step, clock, mesh, controls)
+        if frame != tabulated:
+            if not find_stiffness(table, frame):
+                clock.wanted = frame
+                return TABULATE, count
+            tabulated = frame
+        clock.tries += 1
         trial = propose(
-            step, height, profile, respond, parameters, background, mesh, controls, fields, clock,
+            step, frame, height, profile, respond, parameters, background, mesh, fields, clock,
             lever_state, work,
         )  # fmt: skip
         stable = solve(trial, law, parameters, mesh, controls, clock, work)

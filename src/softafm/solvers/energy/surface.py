@@ -4,8 +4,9 @@ from math import ceil, inf, log2, sqrt
 
 import numpy as np
 
+from softafm.bodies.mesh import UnitMesh, unit_mesh
+from softafm.bodies.stiffness import STEP, Stiffness
 from softafm.errors import DivergedError
-from softafm.halfspace.mesh import unit_mesh
 from softafm.solvers.energy.descent import descend
 from softafm.solvers.energy.equilibrium import raise_tip, tip_force
 from softafm.solvers.energy.frame import frame_for, radius_of_gap, transfer
@@ -16,13 +17,15 @@ from softafm.solvers.energy.layout import (
     ORIGIN,
     Background,
     Functions,
-    Mesh,
     Parameters,
     Room,
+    Table,
+    mesh_of,
     new_clock,
     new_room,
 )
 from softafm.solvers.energy.memory import recall
+from softafm.solvers.energy.stiffness import find_stiffness
 from softafm.solvers.energy.tuning import (
     CLOSEST,
     COARSER_THAN_NEEDED,
@@ -49,7 +52,7 @@ class Surface:
     def __init__(self, contact, motion, lever, strictness: float, finest_spacing: float):
         self.contact = contact
         breaks = motion.breaks
-        compliance = contact.sample.reduced_compliance.chain(breaks[-1] - breaks[0])
+        compliance = contact.body.compliance.chain(breaks[-1] - breaks[0])
         height, height_parameters = motion.compiled_height
         profile, tip_parameters = contact.tip.compiled_profile
         law, potential, law_parameters = contact.surface.compiled_pressure
@@ -59,7 +62,7 @@ class Surface:
             height_parameters,
             tip_parameters,
             law_parameters,
-            np.append(compliance.instantaneous, compliance.modes),
+            np.append(compliance.instantaneous, compliance.elements),
             np.array(compliance.retardation_times, float),
             lever_parameters,
         )
@@ -80,10 +83,10 @@ class Surface:
         self.growth = max(SLOWEST_GROWTH, GROWTH * slack**-0.45) * min(1.0, strictness**0.17)
         self.finest_level = max(0, ceil(log2(COARSEST_SPACING / finest_spacing)))
         self.level = self.first_level = self._find_level(0.4 * contact.open_width / self.open_frame)
-        self.mesh = self._build_mesh(self.level)
+        self._lay(self._build_mesh(self.level))
         self.meshes, self.most_nodes = 1, self.mesh.nodes.size
         self.finest_spacing, self.finest_used = self.mesh.edge_spacing, self.level
-        self.archive = self.mesh, 0.0
+        self.archive = self._build_mesh(self.level), 0.0
         elements = self.parameters.retardation.size
         self._rooms: dict[tuple[int, int, int], Room] = {}
         self.fields = np.zeros((MEMORY + elements, self.mesh.nodes.size))
@@ -92,11 +95,32 @@ class Surface:
         self.clock["contraction"] = 0.0 if slack < 2 else np.inf
         first = contact.contact_radius(float(motion.height(breaks[0])))
         self.clock["frame"] = frame_for(first, self.open_frame)
-        self.background = Background(np.empty((0, 0)), 1.0, 1.0, 1.0, 1.0, 0.0)
+        self.background = Background(np.empty((0, 0)), 1.0, 1.0, 1.0, 1.0, 0.0, 0.0)
         self.clock["force_scale"] = contact.force_scale
 
-    def _build_mesh(self, level: int) -> Mesh:
-        return Mesh(*unit_mesh(COARSEST_SPACING * 2.0**-level, self.growth, EXTENT))
+    def _build_mesh(self, level: int) -> UnitMesh:
+        return unit_mesh(COARSEST_SPACING * 2.0**-level, self.growth, EXTENT)
+
+    def _lay(self, mesh: UnitMesh) -> None:
+        """Take a mesh, with the stiffness of the body on it."""
+        body = self.contact.body
+        self.stiffness = Stiffness(body, mesh)
+        shown = self.stiffness.uniform
+        found = np.empty((0, 0) if shown is not None else self.stiffness.entries.shape[1:])
+        if shown is None:
+            shown = found.view()
+            shown.setflags(write=False)
+        self.mesh = mesh_of(mesh, shown, body.decay)
+        self.table = Table(self.stiffness.entries, 0.0, STEP, found)
+
+    def tabulate(self, frame: float) -> None:
+        """Let the mesh have the stiffness in a frame, m, and the table reach to it."""
+        if self.stiffness.uniform is not None:
+            return
+        self.stiffness.reach(frame)
+        start = np.log(self.contact.body.length) + STEP * self.stiffness.first
+        self.table = self.table._replace(entries=self.stiffness.entries, start=float(start))
+        find_stiffness(self.table, frame)
 
     def _find_level(self, spacing: float) -> int:
         """Level of the mesh whose edge spacing, in contact radii, is at most this."""
@@ -142,7 +166,8 @@ class Surface:
         if coarseness > 0:
             self.level = self._find_level(self.mesh.edge_spacing * self.target / coarseness)
         mesh = self._build_mesh(self.level)
-        self.fields, self.mesh = self._carry(self.fields, mesh, 1.0), mesh
+        self.fields = self._carry(self.fields, mesh, 1.0)
+        self._lay(mesh)
         self.meshes += 1
         self.most_nodes = max(self.most_nodes, self.mesh.nodes.size)
         self.finest_spacing = min(self.finest_spacing, self.mesh.edge_spacing)
@@ -164,7 +189,8 @@ class Surface:
             self.level = self.first_level
             mesh = self._build_mesh(self.level)
             self.fields = self._carry(self.fields, mesh, self.open_frame / clock["frame"])
-            self.mesh, clock["frame"] = mesh, self.open_frame
+            self._lay(mesh)
+            clock["frame"] = self.open_frame
         self.fields[MEMORY:] = 0
         clock["time"] = time
         return gained
@@ -173,8 +199,9 @@ class Surface:
         """Take ``memory``, as ``rewind`` returned it, for that of all that was before now."""
         mesh, frame = self.archive
         self.background = Background(
-            memory, frame, mesh.nodes[-1], mesh.edge_spacing, mesh.growth, self.time
-        )
+            memory, frame, mesh.nodes[-1], mesh.edge_spacing, mesh.growth,
+            frame * self.mesh.decay, self.time,
+        )  # fmt: skip
 
     def memory(self) -> np.ndarray:
         """Return the memory fields now, (elements, n) in Pa·m."""
@@ -185,19 +212,20 @@ class Surface:
         )  # fmt: skip
         return memory + self.fields[MEMORY:]
 
-    def _carry(self, fields, mesh: Mesh, stretch: float) -> np.ndarray:
+    def _carry(self, fields, mesh: UnitMesh, stretch: float) -> np.ndarray:
         """Return fields (m, n) on another mesh, in a frame ``stretch`` times larger."""
         old, n = self.mesh, mesh.nodes.size
         result = np.empty((len(fields), n))
         transfer(
-            fields, old.nodes[-1], old.edge_spacing, old.growth, stretch, mesh.nodes,
-            np.empty((7, n)), result,
+            fields, old.nodes[-1], old.edge_spacing, old.growth, self.clock["frame"] * old.decay,
+            stretch, mesh.nodes, np.empty((7, n)), result,
         )  # fmt: skip
         return result
 
     def settle(self) -> tuple[float, ...]:
         """Equilibrate at frozen memory and return the state as ``RECORD_FIELDS`` lists it."""
         mesh, clock = self.mesh, self.clock
+        self.tabulate(float(clock["frame"]))
         height_at, profile, law, *_, potential = self.functions
         n, frame = mesh.nodes.size, clock["frame"]
         tip, pressure, scratch = np.empty(n), np.empty(n), np.empty(n)
@@ -246,6 +274,7 @@ class Surface:
         mesh, frame, deflection = self.mesh, self.clock["frame"], self.clock["deflection"]
         h0 = self.functions.height(self.time, self.parameters.height) + deflection
         load = self.fields[LOAD]
+        self.tabulate(float(frame))
         elastic = np.pi * frame * self.parameters.compliance[0] * (load @ mesh.stiffness @ load)
 
         def density(radius, deformation):
@@ -277,7 +306,7 @@ def gap_origin(contact) -> float:
         origin = gap + 9 * sqrt(3) * law.largest_tension / float(law.slope(gap))
     else:
         origin = edge - 20 * contact.reach
-    hardest = 1 / contact.sample.reduced_compliance.instantaneous
+    hardest = 1 / contact.body.compliance.instantaneous
     while law.overlaps and law.pressure(origin + CLOSEST * (edge - origin)) < hardest:
         origin -= 0.2 * (edge - origin)
     return max(origin, law.closest_gap)

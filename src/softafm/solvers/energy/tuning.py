@@ -79,7 +79,7 @@ SMALLEST_FRAME = 0.5
 
 EXTENT = 8.0
 """Radius of every mesh, in contact radii; beyond it the surface counts as flat
-(tests/test_halfspace.py: smooth pressures are met to a few 1e-5)."""
+(tests/test_half_space.py: smooth pressures are met to a few 1e-5)."""
 
 COARSEST_SPACING = 0.3
 """Node spacing at the edge of the coarsest mesh, in contact radii; each finer one has half."""

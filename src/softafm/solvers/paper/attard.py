@@ -5,10 +5,11 @@ from typing import Any, ClassVar, Literal
 
 import numpy as np
 
+from softafm.bodies.half_space import refuse_other_bodies
+from softafm.bodies.radial_functions import grid
+from softafm.bodies.rings import ring_influence
 from softafm.checks.validate import one_of, positive, whole
 from softafm.compiled.announce import announced_compilation
-from softafm.halfspace.radial_functions import grid
-from softafm.halfspace.rings import ring_influence
 from softafm.progress import Progress
 from softafm.solvers.history import History
 from softafm.solvers.paper.stepping import ForwardEuler, Stepper, stepper_of
@@ -108,7 +109,10 @@ class Attard:
         ------
         DivergedError
             If the surface blows up or an iteration does not converge.
+        ValueError
+            If the body is no half-space.
         """
+        refuse_other_bodies(self, contact)
         with announced_compilation(self.kind):
             from softafm.solvers.paper import kernel as k
             from softafm.solvers.paper.run import (

@@ -5,10 +5,11 @@ from typing import Any, ClassVar, Literal
 
 import numpy as np
 
+from softafm.bodies import radial_functions as functions
+from softafm.bodies.half_space import refuse_other_bodies
+from softafm.bodies.rings import ring_influence
 from softafm.checks.validate import one_of, positive, whole
 from softafm.compiled.announce import announced_compilation
-from softafm.halfspace import radial_functions as functions
-from softafm.halfspace.rings import ring_influence
 from softafm.progress import Progress
 from softafm.solvers.history import History
 from softafm.solvers.paper.stepping import AdamsBashforth, Stepper, stepper_of
@@ -118,7 +119,10 @@ class EnhancedAttard:
         ------
         DivergedError
             If the surface blows up.
+        ValueError
+            If the body is no half-space.
         """
+        refuse_other_bodies(self, contact)
         with announced_compilation(self.kind):
             from softafm.solvers.paper.run import default_domain, march
 

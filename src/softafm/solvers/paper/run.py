@@ -7,9 +7,9 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from softafm.bodies.mesh import beyond
 from softafm.checks.callers import warn_caller
 from softafm.errors import AccuracyWarning, DivergedError
-from softafm.halfspace.mesh import beyond
 from softafm.instrument.motion import count_periods, is_steady
 from softafm.instrument.motions import lowest_height
 from softafm.solvers.history import History, Profiles
@@ -109,10 +109,10 @@ class _Run:
         self.setup, self.solver, self.motion = discretisation.setup, solver, motion
         self.stiffness = stiffness
         self.law, _, law_parameters = contact.surface.compiled_pressure
-        creep = contact.sample.reduced_compliance.chain(motion.breaks[-1] - motion.breaks[0])
+        creep = contact.body.compliance.chain(motion.breaks[-1] - motion.breaks[0])
         self.material = k.Material(
             law_parameters,
-            np.concatenate([[creep.instantaneous], creep.modes]),
+            np.concatenate([[creep.instantaneous], creep.elements]),
             np.array(creep.retardation_times, float),
         )
         self.edge_gap = contact.edge_gap
@@ -272,7 +272,7 @@ def _largest_pressure(contact, domain: float, unknowns: int) -> float:
     only rise and sink as a whole bears more.
     """
     slope = 2 * contact.tip.profile(domain) / domain
-    hertz = 2 / np.pi * slope / contact.sample.reduced_compliance.instantaneous
+    hertz = 2 / np.pi * slope / contact.body.compliance.instantaneous
     share = 2 if unknowns > 1 else 20
     return share * float(hertz + contact.surface.largest_tension)
 

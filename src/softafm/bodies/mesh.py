@@ -15,22 +15,16 @@ from typing import NamedTuple
 
 import numpy as np
 
-from softafm.halfspace.kernel import influence
-
 
 class UnitMesh(NamedTuple):
-    """Nodes, masses and stiffness of the half-space at contact radius 1.
-
-    For a contact radius a: radii a·nodes, masses a²·masses, u = −c K p becomes
-    stiffness·u = −(c a) masses·p, as K(a) = a·K(1).
-    """
+    """Nodes and masses at contact radius 1; for a contact radius a: a·nodes, a²·masses."""
 
     nodes: np.ndarray
     """ξ, shape (n,)."""
+    spacing: np.ndarray
+    """dξ/dj at the nodes, shape (n,)."""
     masses: np.ndarray
     """∫ f s ds = Σ masses·f, shape (n,)."""
-    stiffness: np.ndarray
-    """Inverse of the symmetric influence matrix, shape (n, n)."""
     edge_spacing: float
     """δ, node spacing at ξ = 1."""
     growth: float
@@ -75,7 +69,7 @@ def _masses(nodes, spacing):
 
 @lru_cache(maxsize=64)
 def unit_mesh(edge_spacing: float, growth: float, extent: float) -> UnitMesh:
-    """Build the mesh out to ξ = ``extent`` (or just beyond) and its stiffness; cached.
+    """Build the mesh out to ξ = ``extent`` (or just beyond); cached.
 
     ``edge_spacing`` δ and ``growth`` g are dimensionless, see the module's formula.
     """
@@ -91,28 +85,12 @@ def unit_mesh(edge_spacing: float, growth: float, extent: float) -> UnitMesh:
     nodes = (low + high) / 2
     nodes[0] = 0.0
     spacing = _spacing(nodes, edge_spacing, growth)
-
     masses = _masses(nodes, spacing)
-    stiffness = _inverse(influence(nodes, spacing, masses))
     far, far_masses = beyond(nodes[-1])
     slopes = np.hypot(1, growth / edge_spacing * (nodes - [[1], [-1]]))
-    for array in (nodes, masses, stiffness, far, far_masses, slopes):
+    for array in (nodes, spacing, masses, far, far_masses, slopes):
         array.setflags(write=False)
-    return UnitMesh(nodes, masses, stiffness, edge_spacing, growth, far, far_masses, slopes)
-
-
-def _inverse(matrix):
-    """Inverse of a symmetric positive definite matrix, which is overwritten.
-
-    By the solvers' own factorisation: the bits of LAPACK's depend on the number of threads.
-    """
-    from softafm.compiled.dense import factorise, solve_factorised
-
-    factorise(matrix, len(matrix))
-    inverse = np.eye(len(matrix))
-    for row in inverse:
-        solve_factorised(matrix, row, len(matrix))
-    return (inverse + inverse.T) / 2
+    return UnitMesh(nodes, spacing, masses, edge_spacing, growth, far, far_masses, slopes)
 
 
 def beyond(end: float) -> tuple[np.ndarray, np.ndarray]:

@@ -15,7 +15,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from softafm.halfspace.kernel import kernel
+from softafm.bodies.kernel import kernel
 
 BASES = ("cosine", "bessel")
 QUADRATURES = ("trapezoid", "midpoint")

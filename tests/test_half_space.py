@@ -7,14 +7,20 @@ from hypothesis import strategies as st
 from scipy.special import i0e
 
 import softafm as sa
-from softafm.halfspace.kernel import kernel
-from softafm.halfspace.mesh import node_index, unit_mesh
+from softafm import bodies
+from softafm.bodies.kernel import kernel
+from softafm.bodies.mesh import node_index, unit_mesh
+from softafm.bodies.stiffness import Stiffness
 from softafm.solvers.energy.tuning import EXTENT
+
+
+def stiffness(mesh):
+    return Stiffness(bodies.HalfSpace(sa.Elastic(1e9, 0.3)), mesh).uniform
 
 
 def displacement(mesh, pressure):
     """K p on the nodes, from the stiffness that solvers use."""
-    return np.linalg.solve(mesh.stiffness, mesh.masses * pressure)
+    return np.linalg.solve(stiffness(mesh), mesh.masses * pressure)
 
 
 @pytest.fixture(scope="module")
@@ -91,7 +97,7 @@ def test_every_mesh_is_stable_and_ordered(log_spacing, growth, extent):
     assert mesh.nodes[-1] >= extent
     assert np.all(mesh.masses > 0)
     assert np.allclose(node_index(mesh.nodes, 10**log_spacing, growth), np.arange(mesh.nodes.size))
-    assert np.linalg.eigvalsh(mesh.stiffness).min() > 0
+    assert np.linalg.eigvalsh(stiffness(mesh)).min() > 0
 
 
 def test_kernel_near_its_singularity():
@@ -104,3 +110,9 @@ def test_kernel_near_its_singularity():
 
 def test_meshes_are_built_once():
     assert unit_mesh(0.1, 0.25, 8.0) is unit_mesh(0.1, 0.25, 8.0)
+
+
+def test_all_half_spaces_share_a_stiffness():
+    mesh = unit_mesh(0.1, 0.25, 8.0)
+    one, other = (Stiffness(bodies.HalfSpace(sa.Elastic(E, 0.3)), mesh) for E in (1e6, 1e9))
+    assert one.uniform is other.uniform
