@@ -17,7 +17,7 @@ import softafm as sa
 from softafm import rheology, surfaces, tips
 from softafm.app.python_lines import python_lines
 from softafm.draw.results import plot
-from softafm.draw.summary import observables
+from softafm.draw.summary import list_observables
 from softafm.experiment import schema
 from softafm.experiment.config import example_text, experiment_from, load_experiment
 from softafm.experiment.regime import rows
@@ -255,7 +255,7 @@ def test_results_of_the_extending_page_are_saved_exported_and_drawn(extending, t
     assert force.get_ylabel() == "Force on the tip (nN)"
     assert radius.get_ylabel() == "Contact radius (nm)"
     assert force.lines[-2].get_ydata()[-1] == pytest.approx(1e9 * float(result.force_held))
-    assert "force_held" in observables(result).columns[0].cells
+    assert "force_held" in list_observables(result).columns[0].cells
 
 
 def test_the_mode_of_the_extending_page_is_swept(extending, relaxing):
