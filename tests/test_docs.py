@@ -21,7 +21,7 @@ from softafm.draw.summary import list_observables
 from softafm.experiment import schema
 from softafm.experiment.config import example_text, experiment_from, load_experiment
 from softafm.experiment.regime import rows
-from softafm.sweeps.reading import campaign_of, table_of
+from softafm.sweeps.reading import make_campaign, read_table
 
 DOCS = Path(__file__).parents[1] / "docs"
 
@@ -260,7 +260,7 @@ def test_results_of_the_extending_page_are_saved_exported_and_drawn(extending, t
 
 def test_the_mode_of_the_extending_page_is_swept(extending, relaxing):
     what = {"vary": {"motion.depth": ["1 nm", "3 nm"]}}
-    campaign = campaign_of(relaxing, Path(), table_of(what), from_file=True)
+    campaign = make_campaign(relaxing, Path(), read_table(what), from_file=True)
     found = [campaign.run(point)["force_held"] for point in campaign.points([range(2)])]
     assert campaign.observables[0].unit == "N"
     assert found[1] > 2 * found[0] > 0
