@@ -97,14 +97,15 @@ def test_fields_fall_beyond_their_mesh_as_their_body_says():
     field, frame, decay, stretch = 1 / (1 + OLD.nodes), 3e-9, 2e7, 1.7
     radius = stretch * OLD.nodes
     outside = radius > OLD.nodes[-1]
-    fallen = field[-1] * OLD.nodes[-1] / radius * np.exp(-decay * frame * (radius - OLD.nodes[-1]))
+    end, beyond = OLD.nodes[-1], radius[outside]
+    fallen = field[-1] * end / beyond * np.exp(-decay * frame * (beyond - end))
     transferred = carried(field, OLD, OLD, stretch, decay * frame)
     reframed, work = np.empty((1, field.size)), np.empty((7, field.size))
     mesh = mesh_with_stiffness(OLD)._replace(decay=decay)
     reframe(field[None], mesh, frame, stretch, work, reframed)
     for found in (transferred, reframed[0]):
         assert np.count_nonzero(outside) > 2
-        np.testing.assert_allclose(found[outside], fallen[outside], rtol=1e-12)
+        np.testing.assert_allclose(found[outside], fallen, rtol=1e-12)
     np.testing.assert_array_equal(
         transferred[~outside], carried(field, OLD, OLD, stretch)[~outside]
     )

@@ -35,7 +35,8 @@ def refuse_incomplete(name: str, value: Any, needed: Sequence[str], wanted: str)
     missing = [each for each in needed if each not in known and not hasattr(value, each)]
     if not missing and not isinstance(value, type):
         return
-    lacks = f"; it has no {all_of(missing)}" if 0 < len(missing) < len(needed) else ""
+    in_part = 0 < len(missing) < len(needed) and not isinstance(value, type)
+    lacks = f"; it has no {all_of(missing)}" if in_part else ""
     raise ValueError(
         f"{name} = {_describe_given(value)}: must be {wanted}{lacks}{_describe_call(value)}"
     )
