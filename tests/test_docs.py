@@ -268,14 +268,14 @@ def test_the_mode_of_the_extending_page_is_swept(extending, relaxing):
 
 def test_the_page_knows_the_mode_of_the_extending_page(extending, relaxing, monkeypatch):
     pytest.importorskip("bokeh")
-    from softafm.app.curves import Shown, figures
+    from softafm.app.curves import Shown, draw_figures
     from softafm.app.form import section
 
     fields = section("motion", None, "stress-relaxation").fields
     assert list(fields) == ["start", "depth", "speed", "duration"]
     assert fields["depth"].help == "Depth below the flat surface, m."
     assert (fields["speed"].unit, fields["speed"].default) == ("m/s", "1 µm/s")
-    assert "Time" in figures([Shown("held", "#000000", extending.relaxation)], "light")
+    assert "Time" in draw_figures([Shown("held", "#000000", extending.relaxation)], "light")
     monkeypatch.setitem(sys.modules, "extending_example", extending)
     names: dict = {}
     exec(python_lines(relaxing, Path()), names)
