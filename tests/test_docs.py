@@ -269,9 +269,9 @@ def test_the_mode_of_the_extending_page_is_swept(extending, relaxing):
 def test_the_page_knows_the_mode_of_the_extending_page(extending, relaxing, monkeypatch):
     pytest.importorskip("bokeh")
     from softafm.app.curves import Shown, draw_figures
-    from softafm.app.form import section
+    from softafm.app.form import describe_section
 
-    fields = section("motion", None, "stress-relaxation").fields
+    fields = describe_section("motion", None, "stress-relaxation").fields
     assert list(fields) == ["start", "depth", "speed", "duration"]
     assert fields["depth"].help == "Depth below the flat surface, m."
     assert (fields["speed"].unit, fields["speed"].default) == ("m/s", "1 µm/s")
