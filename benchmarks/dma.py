@@ -14,7 +14,12 @@ from rich.console import Console
 from rich.table import Table
 
 import softafm as sa
-from softafm.rheology import FractionalStandardLinearSolid, GeneralizedMaxwell, Maxwell, dma_misfit
+from softafm.rheology import (
+    FractionalStandardLinearSolid,
+    GeneralizedMaxwell,
+    Maxwell,
+    measure_misfit,
+)
 
 SEEDS = range(20)
 RUBBER = GeneralizedMaxwell(1e6, [1e6, 5e7, 1e9], [1e-2, 1e-4, 1e-6], 0.5)
@@ -105,7 +110,7 @@ def show_noisy(console: Console) -> None:
 def _found(fits: list, truths: list) -> list[str]:
     counts, plateaus = [len(fit.moduli) for fit in fits], [fit.E_inf / 1e6 for fit in fits]
     largest, rms = np.array([fit.dma_misfit for fit in fits]).T
-    off = [dma_misfit(fit, *truth)[1] for fit, truth in zip(fits, truths, strict=True)]
+    off = [measure_misfit(fit, *truth)[1] for fit, truth in zip(fits, truths, strict=True)]
     return [
         f"{min(counts)} to {max(counts)}",
         f"{min(plateaus):.4g} to {max(plateaus):.4g} MPa",

@@ -21,7 +21,7 @@ import common
 import numpy as np
 
 import softafm as sa
-from softafm.experiment.config import document_from, example_text
+from softafm.experiment.config import parse_document, read_example
 
 HEIGHTS = 42e-9, 46e-9
 
@@ -132,7 +132,7 @@ def main() -> None:
     given = options.parse_args()
 
     heights = np.linspace(*HEIGHTS, given.taps)
-    document = document_from(example_text("ldpe-tapping"), "ldpe-tapping")
+    document = parse_document(read_example("ldpe-tapping"), "ldpe-tapping")
     half = heights[::2]
     before, processor = bare_rate(half, given.workers)
     swept = Swept(document, {"motion.mean_height": heights}, given.workers)

@@ -14,7 +14,7 @@ from urllib.parse import urlsplit
 import pytest
 
 from softafm.cli import main
-from softafm.compiled.announce import announced_compilation
+from softafm.compiled.announce import announce_compilation
 
 NO_BROWSER = "no browser: "
 PATIENCE = 120  # s: for a machine that compiles first, or is busy
@@ -22,7 +22,7 @@ PATIENCE = 120  # s: for a machine that compiles first, or is busy
 
 @pytest.fixture(scope="session", autouse=True)
 def compiled_solvers():
-    with announced_compilation("tests"):
+    with announce_compilation("tests"):
         import softafm.solvers.energy.run
         import softafm.solvers.paper.run
 

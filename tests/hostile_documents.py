@@ -7,14 +7,14 @@ from pathlib import Path
 
 from hostile_input import Input, raw_file
 
-from softafm.experiment.config import document_from, example_text
+from softafm.experiment.config import parse_document, read_example
 
 # Experiments
 
 
 def of_experiments(chance: random.Random) -> Iterator[Input]:
-    text = example_text("ldpe-tapping")
-    document = document_from(text, "ldpe-tapping")
+    text = read_example("ldpe-tapping")
+    document = parse_document(text, "ldpe-tapping")
     yield experiment("sound", text, 0)
     yield experiment("cycles", text.replace("cycles = 1", "cycles = 3"), 0)
     odd = ("[]", "{}", "true", '""', '"\\u0000"', "1979-05-27", "nan", "-inf", "[[1]]",
@@ -117,7 +117,7 @@ def of_tables(chance: random.Random) -> Iterator[Input]:
 
 
 def csv_input(table: str, kind: str, content: bytes | None, code: int = 2) -> Input:
-    document = document_from(example_text("ldpe-tapping"), "")
+    document = parse_document(read_example("ldpe-tapping"), "")
     text = 'mode = "force-distance"\n' + _TABLE[table]
     written = with_line(document, "", "", None).partition("\n")[2]
     kept = [part for part in written.split("[") if part and not part.startswith(f"{table}]")]

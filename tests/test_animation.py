@@ -19,7 +19,7 @@ import softafm as sa
 from softafm.cli import main
 from softafm.draw.scenes import choose_view, choose_window, interpolate_scenes
 from softafm.draw.storyboard import choose_instants
-from softafm.experiment.config import example_text
+from softafm.experiment.config import read_example
 
 LDPE = sa.Contact(
     tip=sa.Paraboloid(radius=10e-9),
@@ -520,7 +520,7 @@ def folder(tmp_path, monkeypatch, tap):
 
 def test_the_bundled_example_makes_a_movie(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
-    (tmp_path / "ldpe-movie.toml").write_text(example_text("ldpe-movie"), encoding="utf-8")
+    (tmp_path / "ldpe-movie.toml").write_text(read_example("ldpe-movie"), encoding="utf-8")
     assert main(["run", "ldpe-movie.toml"]) == 0
     movie = ["animate", "ldpe-movie.nc", "--frames", "20", "--out"]
     assert main([*movie, "tap.html", "--start", "1.5us"]) == 0

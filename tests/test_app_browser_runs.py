@@ -37,7 +37,7 @@ MARKER = """() => [...Bokeh.index.all_views()].map(view => view.model)
 
 
 def python(document):
-    return config.experiment_from(document, Path()).run()
+    return config.build_experiment(document, Path()).run()
 
 
 @pytest.fixture(scope="module")

@@ -1,7 +1,5 @@
 """Figures in the browser: what they hold, in which units, and for whom."""
 
-from pathlib import Path
-
 import numpy as np
 import pytest
 
@@ -13,6 +11,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
+import softafm as sa
 from softafm.app.colours import PALETTES, RUNS
 from softafm.app.curve_data import thin
 from softafm.app.curves import Shown, draw_figures, recolour
@@ -22,9 +21,8 @@ from softafm.experiment import config
 @pytest.fixture(scope="module")
 def results():
     return {
-        name: config.experiment_from(config.document_from(config.example_text(name), name), Path())
-        .run()
-        for name in config.example_names()
+        name: sa.run(config.parse_document(config.read_example(name), name))
+        for name in config.list_examples()
     }  # fmt: skip
 
 

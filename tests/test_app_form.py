@@ -22,8 +22,8 @@ from softafm.app.outlook import estimate_cost, find_problems, foresee, summarise
 from softafm.app.plan import list_sections, make_plan
 from softafm.app.uploads import keep
 from softafm.experiment import schema
-from softafm.experiment.config import example_names, experiment_from
-from softafm.experiment.regime import expected_seconds, regime
+from softafm.experiment.config import build_experiment, list_examples
+from softafm.experiment.regime import estimate_seconds, regime
 from softafm.modes import MODES
 
 HERE = Path()
@@ -119,7 +119,7 @@ def test_defaults_are_those_of_what_is_built(table, choice, name, default):
 
 
 def test_presets_are_the_bundled_examples_and_can_run():
-    assert list(read_presets()) == example_names()
+    assert list(read_presets()) == list_examples()
     assert read_preset_titles()["ldpe-tapping"].startswith("One tap of a 10 nm tip")
     for document in read_presets().values():
         found = foresee(document, HERE)
@@ -129,9 +129,9 @@ def test_presets_are_the_bundled_examples_and_can_run():
 
 
 def test_outlook_is_the_regime_and_cost_of_the_program():
-    experiment = experiment_from(TAP, HERE)
+    experiment = build_experiment(TAP, HERE)
     assert summarise(TAP, HERE) == regime(experiment).rows
-    assert estimate_cost(TAP, HERE) == expected_seconds(experiment)
+    assert estimate_cost(TAP, HERE) == estimate_seconds(experiment)
     assert estimate_cost(read_presets()["ps-approach-curve"], HERE) > 10 * estimate_cost(TAP, HERE)
     assert estimate_cost({**TAP, "run": {"check": True}}, HERE) == pytest.approx(
         4 * estimate_cost(TAP, HERE)

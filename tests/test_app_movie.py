@@ -21,8 +21,8 @@ from softafm.experiment import config
 
 @pytest.fixture(scope="module")
 def tap():
-    text = config.example_text("ldpe-movie")
-    return config.experiment_from(config.document_from(text, ""), Path()).run()
+    text = config.read_example("ldpe-movie")
+    return config.build_experiment(config.parse_document(text, ""), Path()).run()
 
 
 @pytest.fixture

@@ -13,7 +13,7 @@ from softafm.app.limits import Limits
 from softafm.app.page import Page
 from softafm.app.runs import Runner
 from softafm.app.take_away import write_netcdf, write_toml
-from softafm.experiment.config import experiment_from
+from softafm.experiment.config import build_experiment
 
 TAP = read_presets()["ldpe-tapping"]
 CURVE = read_presets()["ps-approach-curve"]
@@ -21,7 +21,7 @@ CURVE = read_presets()["ps-approach-curve"]
 
 @pytest.fixture(scope="module")
 def tap():
-    return experiment_from(TAP, Path()).run()
+    return build_experiment(TAP, Path()).run()
 
 
 @pytest.fixture

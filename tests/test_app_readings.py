@@ -22,7 +22,7 @@ from softafm.app.page import Page
 from softafm.app.readings import MeasuredFiles, Reading, try_out
 from softafm.app.runs import Runner
 from softafm.app.take_away import write_netcdf, write_toml
-from softafm.experiment.config import experiment_from
+from softafm.experiment.config import build_experiment
 from softafm.files.guard import Unreadable, read_apart
 from softafm.files.measured import read_trajectory
 from softafm.tips import read_tip_profile
@@ -198,7 +198,7 @@ def test_a_measured_file_is_read_once_apart_and_then_here(page, monkeypatch):
     reader = "softafm.tips.reading:read_tip_profile"
     assert asked == [("softafm.app.readings:try_out", reader, str(path))]
     with page.form.files_as_read():
-        experiment = experiment_from(page.form.document, page.form.folder)
+        experiment = build_experiment(page.form.document, page.form.folder)
     assert experiment.contact.tip == read_tip_profile(path)
 
 
@@ -271,7 +271,7 @@ def test_moduli_of_a_long_record_are_tried_as_the_form_uses_them(tmp_path):
 
 
 def test_an_uploaded_result_is_drawn_and_comes_back_whole(page):
-    tap = experiment_from(TAP, Path()).run()
+    tap = build_experiment(TAP, Path()).run()
     page.answer(sent("tap.nc", write_netcdf(tap)))
     until(lambda: page._file[1].over)
     page.answer({})

@@ -21,7 +21,7 @@ PATIENCE = 120  # s: for a machine that compiles first, or is busy
 
 
 def example(name, **tables):
-    return config.document_from(config.example_text(name), name) | tables
+    return config.parse_document(config.read_example(name), name) | tables
 
 
 SHORT = example("ldpe-tapping")
@@ -67,7 +67,7 @@ def test_a_run_gives_what_python_gives(runner):
     job = finished(runner)
     assert (job.state, job.problem, job.warnings) == ("done", None, ())
     assert (job.fraction, job.place) == (1.0, 0)
-    expected = config.experiment_from(SHORT, Path()).run()
+    expected = config.build_experiment(SHORT, Path()).run()
     xr.testing.assert_equal(job.result, expected)
     assert job.result.attrs["experiment"] == expected.attrs["experiment"]
 

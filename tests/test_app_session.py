@@ -16,7 +16,7 @@ from softafm.app.tables import make_regime_table, write_lines, write_numbers
 from softafm.app.take_away import write_netcdf
 from softafm.app.worker import refuse_large
 from softafm.draw.summary import list_observables
-from softafm.experiment.config import experiment_from
+from softafm.experiment.config import build_experiment
 from softafm.experiment.scales import Row
 
 TAP = read_presets()["ldpe-tapping"]
@@ -24,7 +24,7 @@ TAP = read_presets()["ldpe-tapping"]
 
 @pytest.fixture(scope="module")
 def tap():
-    return experiment_from(TAP, Path()).run()
+    return build_experiment(TAP, Path()).run()
 
 
 @pytest.fixture

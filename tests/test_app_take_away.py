@@ -87,7 +87,7 @@ DOCUMENTS = {
         motion={"mean_height": "5 nm", "amplitude": "4 nm", "frequency": "1 kHz", "dwell": "1 us"}
     ),
     "a solver of fixed steps": {
-        **config.document_from(config.example_text("attard-triangle"), ""),
+        **config.parse_document(config.read_example("attard-triangle"), ""),
         "solver": {
             "name": "attard",
             "method": "explicit",
@@ -122,7 +122,7 @@ DOCUMENTS = {
         "cantilever": {"stiffness": "10 N/m"},
     },
     "listed ratios": {
-        **config.document_from(config.example_text("ps-approach-curve"), ""),
+        **config.parse_document(config.read_example("ps-approach-curve"), ""),
         "motion": {
             "free_amplitude": "15 nm",
             "amplitude_ratio": [0.9, 0.5],
@@ -131,7 +131,7 @@ DOCUMENTS = {
     },
 }
 DOCUMENTS |= {
-    name: config.document_from(config.example_text(name), name) for name in config.example_names()
+    name: config.parse_document(config.read_example(name), name) for name in config.list_examples()
 }
 
 
@@ -144,7 +144,7 @@ def folder(tmp_path, monkeypatch):
 
 
 def run(document, folder):
-    return config.experiment_from(document, folder).run()
+    return config.build_experiment(document, folder).run()
 
 
 def executed(lines):
@@ -163,13 +163,13 @@ def assert_same(found, expected):
 
 @pytest.mark.parametrize("name", DOCUMENTS)
 def test_the_python_lines_reproduce_the_run(name, folder):
-    lines = take_away.python_lines(DOCUMENTS[name], folder)
+    lines = take_away.write_python(DOCUMENTS[name], folder)
     assert_same(executed(lines), run(DOCUMENTS[name], folder))
     assert max(map(len, lines.splitlines())) <= 100
 
 
 def test_the_python_lines_read_as_if_written_by_hand(folder):
-    lines = take_away.python_lines(DOCUMENTS["ldpe-tapping"], folder)
+    lines = take_away.write_python(DOCUMENTS["ldpe-tapping"], folder)
     assert lines == (
         "import softafm as sa\n\n"
         "tip = sa.Paraboloid(radius=1e-8)\n"
@@ -188,13 +188,13 @@ def test_the_python_lines_read_as_if_written_by_hand(folder):
 
 def test_python_lines_of_a_bad_document_are_refused(folder):
     with pytest.raises(ConfigError, match=r"tip\.radius: missing"):
-        take_away.python_lines(force_curve(tip={"shape": "sphere"}), folder)
+        take_away.write_python(force_curve(tip={"shape": "sphere"}), folder)
 
 
 def test_a_file_name_in_python_lines_is_text_and_nothing_else(folder):
     name = "tip'); import os; ('.csv"
     (folder / name).write_text(WITH_FILES["tip.csv"])
-    lines = take_away.python_lines(force_curve(tip={"shape": "measured", "file": name}), folder)
+    lines = take_away.write_python(force_curve(tip={"shape": "measured", "file": name}), folder)
     assert "os" not in compile(lines, "lines", "exec").co_names
     assert executed(lines).attrs["mode"] == "force-distance"
 
@@ -214,7 +214,7 @@ def test_the_command_line_reproduces_the_run(name, folder, capsys):
 @pytest.mark.parametrize("name", DOCUMENTS)
 def test_the_experiment_file_holds_the_document(name):
     text = take_away.write_toml(DOCUMENTS[name])
-    assert config.document_from(text, name) == DOCUMENTS[name]
+    assert config.parse_document(text, name) == DOCUMENTS[name]
 
 
 @pytest.mark.parametrize("mode", ["../../etc/passwd", "a b; rm -rf", None, ["x"]])

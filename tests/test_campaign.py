@@ -8,13 +8,13 @@ import pytest
 
 import softafm as sa
 from softafm.checks.refusals import ConfigError
-from softafm.experiment.config import document_from, example_text, experiment_from
+from softafm.experiment.config import build_experiment, parse_document, read_example
 from softafm.modes import MODES
 from softafm.sweeps.block import DONE, FAILED, WARNED, Work
 from softafm.sweeps.reading import make_campaign, read_table
 from softafm.sweeps.sweep import plan
 
-TAP = document_from(example_text("ldpe-tapping"), "ldpe-tapping")
+TAP = parse_document(read_example("ldpe-tapping"), "ldpe-tapping")
 EXAMPLES = ("attard-triangle", "ldpe-spectroscopy", "ldpe-tapping")
 
 
@@ -33,8 +33,8 @@ def refused(sweep, document=TAP, what=None):
 
 @pytest.mark.parametrize("name", EXAMPLES)
 def test_the_observables_of_a_mode_are_the_scalars_of_its_runs(name):
-    document = document_from(example_text(name), name)
-    result = experiment_from(document, Path()).run()
+    document = parse_document(read_example(name), name)
+    result = build_experiment(document, Path()).run()
     scalars = [n for n, v in result.data_vars.items() if v.ndim == 0]
     assert sorted(MODES[document["mode"]].observed) == sorted(scalars)
 
@@ -45,14 +45,14 @@ def test_a_run_gives_what_the_experiment_gives_to_the_last_bit():
     given = found.run(point)
     document = copy.deepcopy(TAP)
     document["motion"]["mean_height"], document["sample"]["E_inf"] = "43 nm", "0.2 GPa"
-    result = experiment_from(document, Path()).run()
+    result = build_experiment(document, Path()).run()
     assert {name: float(value) for name, value in given.items()} == {
         name: float(result[name]) for name in MODES["tapping-cycle"].observed
     }
 
 
 def test_an_approach_curve_gives_arrays_over_branch_and_ratio():
-    document = document_from(example_text("ps-approach-curve"), "ps-approach-curve")
+    document = parse_document(read_example("ps-approach-curve"), "ps-approach-curve")
     document["motion"] = {"free_amplitude": "15 nm", "amplitude_ratio": [0.8, 0.5]}
     found = campaign({"vary": {"sample.creep_time": ["1 us"]}}, document)
     phase = next(o for o in found.observables if o.name == "phase")
@@ -64,7 +64,7 @@ def test_an_approach_curve_gives_arrays_over_branch_and_ratio():
 
 
 def test_a_file_of_a_campaign_is_read(tmp_path):
-    text = example_text("ldpe-tapping") + (
+    text = read_example("ldpe-tapping") + (
         "[sweep]\ndesign = 'grid'\nbatch = 7\nobservables = ['virial']\n"
         "[sweep.vary]\nsample.E_inf = ['0.1 GPa']\n'tip.radius' = ['10 nm', '20 nm']\n"
         "[[sweep.together]]\n'motion.amplitude' = ['40 nm', '50 nm', '60 nm']\n"
@@ -159,7 +159,7 @@ def test_a_function_gives_its_scalars_or_a_reason():
 
 def test_the_scalars_of_a_dataset_keep_their_units():
     def tap(mean_height):
-        experiment = experiment_from(TAP, Path())
+        experiment = build_experiment(TAP, Path())
         return sa.tapping_cycle(experiment.contact, 49.6e-9, mean_height, 278e3, 1)
 
     found = campaign({"vary": {"mean_height": [43e-9]}}, what=tap)

@@ -19,7 +19,7 @@ from hypothesis import strategies as st
 
 import softafm as sa
 from softafm.cli import main
-from softafm.experiment.config import example_text
+from softafm.experiment.config import read_example
 
 posix = pytest.mark.skipif(os.name != "posix", reason="signals and terminals of POSIX")
 
@@ -29,7 +29,7 @@ def folder(tmp_path, monkeypatch):
     """An empty current directory with the two examples in it."""
     monkeypatch.chdir(tmp_path)
     for name in ("ldpe-tapping", "attard-triangle"):
-        (tmp_path / f"{name}.toml").write_text(example_text(name), encoding="utf-8")
+        (tmp_path / f"{name}.toml").write_text(read_example(name), encoding="utf-8")
     return tmp_path
 
 
@@ -394,7 +394,7 @@ def test_example_lists_and_writes(tmp_path, monkeypatch, softafm):
     assert softafm("example", "ldpe-tapping")[0] == 0
     assert softafm("example", "ldpe-tapping", "--out", "mine.toml")[0] == 0
     assert names(tmp_path) == ["ldpe-tapping.toml", "mine.toml"]
-    assert (tmp_path / "mine.toml").read_text(encoding="utf-8") == example_text("ldpe-tapping")
+    assert (tmp_path / "mine.toml").read_text(encoding="utf-8") == read_example("ldpe-tapping")
 
 
 def test_version_and_help(softafm):
@@ -445,7 +445,7 @@ def users_folder(monkeypatch):
         folder = Path(name)
         folder.chmod(0o777)
         config = folder / "ldpe-tapping.toml"
-        config.write_text(example_text("ldpe-tapping"), encoding="utf-8")
+        config.write_text(read_example("ldpe-tapping"), encoding="utf-8")
         config.chmod(0o644)
         monkeypatch.chdir(folder)
         root = os.getuid() == 0

@@ -11,7 +11,7 @@ import pytest
 from result_samples import results
 
 import softafm as sa
-from softafm.experiment.config import example_text
+from softafm.experiment.config import read_example
 from softafm.files import guard
 from softafm.results.datasets import load_apart
 
@@ -130,7 +130,7 @@ def test_a_full_disk_is_one_line_and_leaves_what_was_there(folder):
     outputs = [line.rpartition(" ")[2] for line in writers]
     for name in outputs:
         (folder / name).write_text("precious")
-    (folder / "known.toml").write_text(example_text("ldpe-tapping"))
+    (folder / "known.toml").write_text(read_example("ldpe-tapping"))
     before = sorted(os.listdir())
     asked = "".join(f"{line} --force\n" for line in writers)
     answer = subprocess.run(

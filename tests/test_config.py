@@ -17,9 +17,9 @@ from softafm.experiment import schema
 from softafm.experiment.config import (
     ConfigError,
     Experiment,
-    example_names,
-    example_text,
+    list_examples,
     load_experiment,
+    read_example,
 )
 from softafm.surfaces import read_law
 from softafm.units.quantities import (
@@ -648,27 +648,27 @@ def test_running_an_approach_curve_is_calling_the_function(load):
 
 def test_bundled_examples_load_and_say_what_they_are(load):
     named = {"ldpe-spectroscopy", "ldpe-tapping", "ps-approach-curve"}
-    assert named | {"pdms-sphere", "epoxy-tapping"} <= set(example_names())
-    for name in example_names():
-        text = example_text(name)
+    assert named | {"pdms-sphere", "epoxy-tapping"} <= set(list_examples())
+    for name in list_examples():
+        text = read_example(name)
         assert text.startswith("# ")
         assert isinstance(load(text), Experiment)
 
 
 def test_attards_moduli_are_halved(load):
-    sample = load(example_text("attard-triangle")).contact.sample
+    sample = load(read_example("attard-triangle")).contact.sample
     assert sample.reduced_modulus_instantaneous == pytest.approx(5e9)
     assert sample.reduced_modulus_relaxed == pytest.approx(0.5e9)
 
 
 def test_ldpe_example_is_the_reference_case(load):
-    result = load(example_text("ldpe-tapping")).run()
+    result = load(read_example("ldpe-tapping")).run()
     assert float(result["virial"]) == pytest.approx(-3.4805e-17, rel=0.01)
     assert float(result["dissipation"]) == pytest.approx(8.7097e-17, rel=0.01)
 
 
 def test_polystyrene_example_is_the_papers_table(load):
-    experiment = load(example_text("ps-approach-curve"))
+    experiment = load(read_example("ps-approach-curve"))
     assert experiment.contact == sa.Contact(
         tip=sa.Paraboloid(50e-9),
         sample=sa.StandardLinearSolid(4.25e9, 1.89e9, 1e-7, 0.35),
@@ -680,7 +680,7 @@ def test_polystyrene_example_is_the_papers_table(load):
 
 
 def test_spectroscopy_example_is_the_papers_wave_and_the_reference_case(load):
-    experiment = load(example_text("ldpe-spectroscopy"))
+    experiment = load(read_example("ldpe-spectroscopy"))
     assert experiment.motion.speed == pytest.approx(
         sa.Triangle.from_frequency(0.0, 50e-9, 1.0).speed
     )
@@ -691,7 +691,7 @@ def test_spectroscopy_example_is_the_papers_wave_and_the_reference_case(load):
 
 
 def test_pdms_example_is_torn_off_as_in_jkr_theory(load):
-    experiment = load(example_text("pdms-sphere"))
+    experiment = load(read_example("pdms-sphere"))
     contact = experiment.contact
     assert contact.sample == samples.pdms()
     assert 5 < contact.tabor_relaxed < 10
@@ -701,23 +701,23 @@ def test_pdms_example_is_torn_off_as_in_jkr_theory(load):
     assert result.sizes["jump"] == 2
     real = {"law": "lennard-jones", "work_of_adhesion": "50 mJ/m^2", "z0": "0.3 nm"}
     override = f"surface={{{', '.join(f'{k}={v!r}' for k, v in real.items())}}}"
-    named = load(example_text("pdms-sphere"), override).contact
+    named = load(read_example("pdms-sphere"), override).contact
     assert named.tabor_relaxed == pytest.approx(400, rel=0.02)
 
 
 def test_epoxy_example_softens_at_a_lower_frequency(load):
-    fast = load(example_text("epoxy-tapping")).run()
-    slow = load(example_text("epoxy-tapping"), "motion.frequency=300 Hz").run()
+    fast = load(read_example("epoxy-tapping")).run()
+    slow = load(read_example("epoxy-tapping"), "motion.frequency=300 Hz").run()
     assert 0.7 < float(slow["force_max"] / fast["force_max"]) < 0.9
     for tap in (fast, slow):
         assert float(tap["dissipation"]) == pytest.approx(float(tap["viscous_loss"]), rel=0.01)
-    melt = load(example_text("epoxy-tapping"), "sample={model='polyisobutylene'}").contact.sample
+    melt = load(read_example("epoxy-tapping"), "sample={model='polyisobutylene'}").contact.sample
     assert melt == samples.polyisobutylene()
 
 
 def test_unknown_example():
     with pytest.raises(ConfigError, match="did you mean 'ldpe-tapping'"):
-        example_text("ldpe-taping")
+        read_example("ldpe-taping")
 
 
 # Units

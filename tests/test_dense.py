@@ -77,7 +77,7 @@ def test_products_of_rows(rows, columns, n, seed):
     random = np.random.default_rng(seed)
     left, right = random.normal(size=(rows, n)), random.normal(size=(columns, n))
     out = np.full((rows, columns), np.nan)
-    dense.row_products(left, right, out)
+    dense.multiply_rows(left, right, out)
     assert np.allclose(out, left @ right.T, rtol=0, atol=1e-12 * n)
     one = np.empty(rows)
     dense.multiply(left, right[0], one)

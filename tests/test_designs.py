@@ -8,18 +8,18 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from softafm.checks.refusals import ConfigError
-from softafm.experiment.config import document_from, example_text
-from softafm.experiment.fields import field_of, plain_field, replaced
+from softafm.experiment.config import parse_document, read_example
+from softafm.experiment.fields import find_field, make_plain_field, replace_value
 from softafm.sweeps.designs import Between, make_design
 from softafm.units import quantities as units
 
-TAP = document_from(example_text("ldpe-tapping"), "ldpe-tapping")
+TAP = parse_document(read_example("ldpe-tapping"), "ldpe-tapping")
 KINDS = [kind for kind in vars(units).values() if isinstance(kind, units.Kind)]
 TWO = {"sample.E_inf": Between("10 MPa", 1e9, log=True), "motion.amplitude": Between(1e-8, 5e-8)}
 
 
 def of_tap(path):
-    return field_of(TAP, path, [path], Path(), bare=True)
+    return find_field(TAP, path, [path], Path(), bare=True)
 
 
 def design(vary, kind="grid", samples=None, seed=0, field=of_tap, taken=()):
@@ -69,9 +69,9 @@ def test_entries_of_lists_and_parts_of_sums_can_vary():
         ("sample.moduli[1]", "3 GPa", 3e9),
         ("surface.parts[0].decay", "3 nm", 3e-9),
     ):
-        field = field_of(document, path, [path], Path(), bare=False)
+        field = find_field(document, path, [path], Path(), bare=False)
         assert field.read(text) == value
-    changed = replaced(document, ("sample", "moduli", 1), "3 GPa")
+    changed = replace_value(document, ("sample", "moduli", 1), "3 GPa")
     assert changed["sample"]["moduli"] == ["1 GPa", "3 GPa"]
     assert prony["moduli"] == ["1 GPa", "2 GPa"]
 
@@ -189,14 +189,14 @@ def test_a_bad_sample_is_refused_in_one_line(options, words):
 
 
 def test_units_must_be_written_in_a_file():
-    field = field_of(TAP, "tip.radius", [], Path(), bare=False)
+    field = find_field(TAP, "tip.radius", [], Path(), bare=False)
     with pytest.raises(ValueError, match="the unit is missing"):
         field.read(1e-9)
 
 
 def test_a_function_takes_what_it_is_given():
     vary = {"n": [1, 2], "word": ["a", "b"], "flag": [True, False], "x": [0.5, 1]}
-    found = design(vary, field=plain_field)
+    found = design(vary, field=make_plain_field)
     assert found.at((1, 0, 1, 1)) == {"n": 2, "word": "a", "flag": False, "x": 1}
     kinds = {name: values.dtype.kind for name, (_, values, _) in found.coordinates.items()}
     assert kinds == {"n": "i", "word": "U", "flag": "b", "x": "f"}

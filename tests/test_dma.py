@@ -12,15 +12,15 @@ import numpy as np
 import pytest
 
 import softafm as sa
-from softafm.app.python_lines import python_lines
+from softafm.app.python_lines import write_python
 from softafm.draw.sample import plot_rheology
-from softafm.experiment.config import document_from, load_experiment
+from softafm.experiment.config import load_experiment, parse_document
 from softafm.rheology import (
     FractionalStandardLinearSolid,
     GeneralizedMaxwell,
     KelvinVoigt,
     Maxwell,
-    dma_misfit,
+    measure_misfit,
     read_dma,
 )
 
@@ -86,13 +86,13 @@ def test_terms_without_noise_are_found_one_by_one():
 def test_fit_of_a_broad_transition(noise, largest, rms):
     data = measured(noise)
     sample = GeneralizedMaxwell.from_dma(*data, 0.49)
-    misfit = dma_misfit(sample, *data)
+    misfit = measure_misfit(sample, *data)
     assert misfit == sample.dma_misfit
     assert misfit[0] < largest
     assert misfit[1] < rms
     assert min(sample.moduli) > 0
     # The truth, not the noise, is what the fit should have found.
-    assert dma_misfit(sample, *measured())[1] < max(rms, noise)
+    assert measure_misfit(sample, *measured())[1] < max(rms, noise)
 
 
 def test_fit_recovers_a_series_of_its_own_times():
@@ -102,7 +102,7 @@ def test_fit_recovers_a_series_of_its_own_times():
     frequency = np.geomspace(0.01, 100, 30)
     data = frequency, *moduli_of(true, frequency)
     fit = GeneralizedMaxwell.from_dma(*data, 0.4)
-    assert dma_misfit(fit, *data)[0] < 2e-3
+    assert measure_misfit(fit, *data)[0] < 2e-3
 
 
 @pytest.mark.parametrize("seed", range(5))
@@ -113,7 +113,7 @@ def test_master_curves_whose_storage_dips_are_fitted(seed):
     fit = GeneralizedMaxwell.from_dma(*data, 0.45)
     assert fit.dma_misfit[0] < 0.1
     assert fit.dma_misfit[1] < np.hypot(0.03, 0.01)
-    assert dma_misfit(fit, *truth)[1] < 0.025
+    assert measure_misfit(fit, *truth)[1] < 0.025
     assert 10 < len(fit.moduli) < 2 * 14
     # Slow terms are nearer to the truth than its moduli were to the plateau.
     assert pytest.approx(2e6, rel=0.05) == fit.E_inf
@@ -138,7 +138,7 @@ def test_plateaus_with_noise_have_a_long_term_modulus(moduli, times, decades, se
     plateau = 1e6 + sum(m for m, t in zip(moduli, times, strict=True) if t > 1 / (2 * pi * 0.01))
     assert pytest.approx(plateau, rel=0.04) == fit.E_inf
     assert len(fit.moduli) <= min(len(moduli) + 1, 6)
-    assert dma_misfit(fit, frequency, *truth)[1] < 0.015
+    assert measure_misfit(fit, frequency, *truth)[1] < 0.015
 
 
 @pytest.mark.parametrize("seed", SEEDS)
@@ -160,7 +160,7 @@ def test_a_glass_with_small_losses(seed):
     frequency = np.geomspace(0.1, 1e2, 31)
     truth = moduli_of(true, frequency)
     fit = GeneralizedMaxwell.from_dma(frequency, *noisy(truth, 0.02, seed), 0.35)
-    assert dma_misfit(fit, frequency, *truth)[1] < 0.02
+    assert measure_misfit(fit, frequency, *truth)[1] < 0.02
     assert fit.E_inf > 1e9
     # No fast term stiffens the glass beyond what its losses tell.
     assert fit.E_inf + sum(fit.moduli) < 1.2 * truth[0][-1]
@@ -194,7 +194,7 @@ def test_order_does_not_matter_and_repeats_count_twice():
     assert falling == fit
     assert falling.dma_misfit == fit.dma_misfit
     twice = [np.concatenate([each, each[::-1]]) for each in (frequency, storage, loss)]
-    assert dma_misfit(fit, *twice) == pytest.approx(fit.dma_misfit, rel=1e-12)
+    assert measure_misfit(fit, *twice) == pytest.approx(fit.dma_misfit, rel=1e-12)
     again = GeneralizedMaxwell.from_dma(*twice, 0.49)
     assert again.storage_modulus(frequency) == pytest.approx(
         fit.storage_modulus(frequency), rel=0.02
@@ -422,7 +422,7 @@ def test_noise_alone_is_never_refused(true, seed):
     with pytest.warns(sa.AccuracyWarning, match="^the sample differs from the measured moduli"):
         fit = GeneralizedMaxwell.from_dma(frequency, *data, 0.5)
     assert fit.dma_misfit[1] < 0.14
-    assert dma_misfit(fit, frequency, *moduli_of(true, frequency))[1] < 0.12
+    assert measure_misfit(fit, frequency, *moduli_of(true, frequency))[1] < 0.12
 
 
 # Files
@@ -545,8 +545,8 @@ def test_poissons_ratio_is_that_of_the_sample_in_files(experiment, softafm):
     (experiment / "dma.csv").write_text(text)
     sample = load_experiment("rubber.toml", ["sample.poisson=0.4"]).contact.sample
     assert sample.storage_modulus(HERTZ) == pytest.approx(STORAGE, rel=1e-6)
-    lines = python_lines(
-        document_from((experiment / "rubber.toml").read_text(), "rubber.toml"), experiment
+    lines = write_python(
+        parse_document((experiment / "rubber.toml").read_text(), "rubber.toml"), experiment
     )
     assert "*sa.read_dma('dma.csv', poisson=0.49)" in lines.replace('"', "'")
 

@@ -19,12 +19,12 @@ from own_modes import modes_restored
 
 import softafm as sa
 from softafm import rheology, surfaces, tips
-from softafm.app.python_lines import python_lines
+from softafm.app.python_lines import write_python
 from softafm.draw.results import plot
 from softafm.draw.summary import list_observables
 from softafm.experiment import schema
-from softafm.experiment.config import example_text, experiment_from, load_experiment
-from softafm.experiment.regime import rows
+from softafm.experiment.config import build_experiment, load_experiment, read_example
+from softafm.experiment.regime import list_rows
 from softafm.sweeps.reading import make_campaign, read_table
 
 DOCS = Path(__file__).parents[1] / "docs"
@@ -236,7 +236,7 @@ def test_the_mode_of_the_extending_page_runs_from_a_file(extending, relaxing, tm
     same = extending.stress_relaxation(experiment.contact, 5e-9, 2e-9, 1e-5, 2e-3)
     xr.testing.assert_equal(result, same)
     assert experiment.observables()["force_held"] == float(same.force_held)
-    assert [row.name for row in rows(experiment)][-1] == "expected cost"
+    assert [row.name for row in list_rows(experiment)][-1] == "expected cost"
     checked = extending.stress_relaxation(experiment.contact, 5e-9, 2e-9, 1e-5, check=True)
     assert set(json.loads(checked.attrs["check_differences"])) == {"force_on_arrival", "force_held"}
 
@@ -280,8 +280,8 @@ def test_the_page_knows_the_mode_of_the_extending_page(extending, relaxing, monk
     assert "Time" in draw_figures([Shown("held", "#000000", extending.relaxation)], "light")
     monkeypatch.setitem(sys.modules, "extending_example", extending)
     names: dict = {}
-    exec(python_lines(relaxing, Path()), names)
-    xr.testing.assert_equal(names["result"], experiment_from(relaxing, Path()).run())
+    exec(write_python(relaxing, Path()), names)
+    xr.testing.assert_equal(names["result"], build_experiment(relaxing, Path()).run())
 
 
 def test_the_mode_of_the_extending_page_becomes_one_of_the_program_by_a_file_and_a_line(tmp_path):
@@ -322,7 +322,7 @@ def test_the_mode_of_the_extending_page_becomes_one_of_the_program_by_a_file_and
 )
 def test_files_of_the_mode_of_the_extending_page_are_refused_in_a_line(relaxing, motion, line):
     with pytest.raises(ValueError, match=f"^{re.escape(line)}") as refused:
-        experiment_from({**relaxing, "motion": motion}, Path())
+        build_experiment({**relaxing, "motion": motion}, Path())
     assert len(str(refused.value).splitlines()) == 1
 
 
@@ -369,7 +369,7 @@ def test_the_first_force_curve_is_what_the_tutorial_says(tmp_path, monkeypatch):
 
 def test_the_first_tap_is_what_the_tutorial_says(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
-    (tmp_path / "ldpe-tapping.toml").write_text(example_text("ldpe-tapping"), encoding="utf-8")
+    (tmp_path / "ldpe-tapping.toml").write_text(read_example("ldpe-tapping"), encoding="utf-8")
     page = example_module("first-tap.md", tmp_path)
     assert page.regime.tabor_instantaneous == pytest.approx(0.45, abs=0.005)
     assert page.regime.tabor_relaxed == pytest.approx(3.3, abs=0.05)
@@ -385,7 +385,7 @@ def test_the_solver_tables_of_the_command_line_page_hold_the_defaults(tmp_path):
     path = tmp_path / "experiment.toml"
     solvers = []
     for table in re.findall(r"```toml\n(\[solver\]\n.*?)```", page, re.S):
-        path.write_text(f"{example_text('ldpe-tapping')}\n{table}", encoding="utf-8")
+        path.write_text(f"{read_example('ldpe-tapping')}\n{table}", encoding="utf-8")
         solvers.append(load_experiment(path).solver)
     segments, functions = solvers
     assert replace(segments, domain=None, relaxation=None) == sa.solvers.Attard()
@@ -435,7 +435,7 @@ def test_the_command_line_page_lists_every_solver_with_its_keys():
 @pytest.mark.parametrize("snippet", re.findall(r"```toml\n(.*?)```", COMMAND_LINE, re.S))
 def test_the_snippets_of_the_command_line_page_are_accepted(snippet, tmp_path):
     written = tomllib.loads(snippet)
-    base = tomllib.loads(example_text("ldpe-tapping"))
+    base = tomllib.loads(read_example("ldpe-tapping"))
     path = tmp_path / "experiment.toml"
     mode = written.get("mode", "tapping-cycle")
     if "free_amplitude" in written.get("motion", {}):

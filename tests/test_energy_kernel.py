@@ -14,7 +14,7 @@ from softafm.bodies.stiffness import Stiffness
 from softafm.instrument.compiled_levers import hold, remember_nothing
 from softafm.solvers.energy.descent import descend
 from softafm.solvers.energy.equilibrium import equilibrate, tip_force
-from softafm.solvers.energy.frame import radius_of_gap, reframe, transfer
+from softafm.solvers.energy.frame import find_radius, reframe, transfer
 from softafm.solvers.energy.layout import (
     FULL,
     LOAD,
@@ -24,12 +24,12 @@ from softafm.solvers.energy.layout import (
     Controls,
     Parameters,
     Table,
-    mesh_of,
+    make_mesh,
     new_clock,
     new_room,
 )
-from softafm.solvers.energy.memory import memory_weights
-from softafm.solvers.energy.proposal import extrapolation_weights
+from softafm.solvers.energy.memory import find_memory_weights
+from softafm.solvers.energy.proposal import find_extrapolation_weights
 from softafm.solvers.energy.step import advance
 
 R, W, Z0 = 10e-9, 0.05, 0.3e-9
@@ -41,7 +41,7 @@ seeds = st.integers(0, 2**32 - 1)
 
 def mesh_with_stiffness(mesh):
     """A mesh on a half-space."""
-    return mesh_of(mesh, Stiffness(HalfSpace(sa.Elastic(1e9, 0.3)), mesh).uniform, 0.0)
+    return make_mesh(mesh, Stiffness(HalfSpace(sa.Elastic(1e9, 0.3)), mesh).uniform, 0.0)
 
 
 UNIFORM = Table(np.empty((0, 1, 1)), 0.0, 1.0, np.empty((0, 0)))
@@ -162,7 +162,7 @@ def filtered(ratio, instants):
 
 def weights_of(step, last, order, compliance, retardation):
     weights = np.empty((len(retardation), 5))
-    memory_weights(
+    find_memory_weights(
         step, last, order, np.array(compliance, float), np.array(retardation, float), weights
     )
     return weights[:, :4]
@@ -433,10 +433,10 @@ def test_force_has_the_tail_of_a_flat_surface():
 
 def test_radius_of_a_gap():
     gap = Z0 * (0.5 + MESH.nodes**2)
-    radius = radius_of_gap(gap, MESH.nodes, 1.5 * Z0)
+    radius = find_radius(gap, MESH.nodes, 1.5 * Z0)
     assert radius == pytest.approx(1.0, abs=0.01)
-    assert radius_of_gap(gap, MESH.nodes, 0.4 * Z0) == 0
-    assert radius_of_gap(gap, MESH.nodes, 1e3 * Z0) == MESH.nodes[-1]
+    assert find_radius(gap, MESH.nodes, 0.4 * Z0) == 0
+    assert find_radius(gap, MESH.nodes, 1e3 * Z0) == MESH.nodes[-1]
 
 
 @given(st.floats(0.1, 3), st.floats(0.1, 3), st.floats(0.1, 3))
@@ -444,7 +444,7 @@ def test_extrapolation_continues_parabolas(step, last, before):
     times = np.array([0.0, -last, -last - before])
     weights = np.empty(3)
     for history in (1, 2, 3):
-        extrapolation_weights(history, step, last, before, weights)
+        find_extrapolation_weights(history, step, last, before, weights)
         for power in range(history):
             assert weights @ times**power == pytest.approx(step**power, rel=1e-9, abs=1e-9)
 

@@ -233,7 +233,7 @@ def test_a_motion_of_a_plain_class_is_a_motion():
         ({"top_speed": 0.9e-3}, "must be at least the speed at"),
         ({"height": lambda time: 1e-9}, "motion.height(time) = 1e-09: of the motion"),
         ({"velocity": lambda time: -RAMP.velocity(time)}, "must be the slope of the height there"),
-        ({"compiled_height": (RAMP.height, np.zeros(4))}, "compiled(HEIGHT)"),
+        ({"compiled_height": (RAMP.height, np.zeros(4))}, "compile_when_used(HEIGHT)"),
         ({"compiled_height": (RAMP.compiled_height[0], [0.0])}, "must be an array of floats"),
         (
             {"compiled_height": sa.Triangle(4e-9, 1e-9, 1e-3).compiled_height},

@@ -8,7 +8,7 @@ import pytest
 from scipy.integrate import solve_ivp
 
 import softafm as sa
-from softafm.compiled.functions import ACCEPTANCE, RESPONSE, compiled
+from softafm.compiled.functions import ACCEPTANCE, RESPONSE, compile_when_used
 from softafm.instrument.compiled_levers import remember_nothing
 from softafm.instrument.lever import Rigid, Spring
 
@@ -18,7 +18,7 @@ SOFT = sa.Contact(sa.Paraboloid(R), sa.StandardLinearSolid(2e9, 0.1e9, 1e-5, 0.4
 STIFF = sa.Contact(sa.Paraboloid(R), sa.Elastic(1e13, 0.3), LAW)
 
 
-@compiled(RESPONSE)
+@compile_when_used(RESPONSE)
 def ring(time, step, deflection, force, parameters, state):
     """A mass on a spring, without friction, under a force that is linear in time over the step."""
     k, omega = parameters
@@ -31,7 +31,7 @@ def ring(time, step, deflection, force, parameters, state):
     return free + early * force / k, k / late
 
 
-@compiled(ACCEPTANCE)
+@compile_when_used(ACCEPTANCE)
 def ring_on(time, step, before, force, parameters, state):
     k, omega = parameters
     theta, rate = omega * step, (force - before) / step
@@ -59,7 +59,7 @@ class Ringing:
         return Rigid()
 
 
-@compiled(ACCEPTANCE)
+@compile_when_used(ACCEPTANCE)
 def count(time, step, before, force, parameters, state):
     """Remember the time passed, the last instant, and how often the force was not the last one."""
     state[0] += step

@@ -15,10 +15,10 @@ from softafm.app.form import read_presets
 from softafm.experiment import schema
 from softafm.experiment.config import (
     ConfigError,
-    example_names,
-    example_text,
+    list_examples,
+    list_maps,
     load_experiment,
-    map_names,
+    read_example,
 )
 from softafm.maps.map_file import build_map, load_map
 from softafm.maps.patterns import make_blend
@@ -49,7 +49,7 @@ def volume(*materials, **table):
 def folder(tmp_path, monkeypatch):
     """An empty current directory with the bundled map, an image and arrays in it."""
     monkeypatch.chdir(tmp_path)
-    (tmp_path / "blend.toml").write_text(example_text("blend"), encoding="utf-8")
+    (tmp_path / "blend.toml").write_text(read_example("blend"), encoding="utf-8")
     Image.fromarray(GREY).save("grey.png")
     Image.fromarray(np.where(GREY > 100, 200, 50).astype(np.uint8)).save("two.png")
     np.save("share.npy", GREY / 255)
@@ -73,7 +73,7 @@ def small(*more):
 
 
 def test_the_bundled_blend_is_what_python_would_build():
-    found = build_map(tomllib.loads(example_text("blend")), None)
+    found = build_map(tomllib.loads(read_example("blend")), None)
     contacts = [
         sa.Contact(TIP, sa.samples.polystyrene(), sa.LennardJones(2e-20, 0.15e-9)),
         sa.Contact(TIP, sa.samples.ldpe(), sa.LennardJones(1e-19, 0.25e-9)),
@@ -229,8 +229,8 @@ def test_a_number_of_workers_is_refused(folder, softafm):
 
 
 def test_the_blend_is_an_example_but_no_experiment(folder, softafm):
-    assert map_names() == ["blend"]
-    assert "blend" not in [*example_names(), *read_presets()]
+    assert list_maps() == ["blend"]
+    assert "blend" not in [*list_examples(), *read_presets()]
     assert re.search(r"^blend +Map of", softafm("example")[1], re.MULTILINE)
     _, out, _ = softafm("example", "blend", "--force")
     assert "softafm scan blend.toml" in out
@@ -368,7 +368,7 @@ def test_a_ramp_that_starts_inside_a_pixel_is_refused(folder):
 
 
 def test_a_sample_that_flows_is_not_tapped(folder):
-    document = tomllib.loads(example_text("blend"))
+    document = tomllib.loads(read_example("blend"))
     fluid = {"model": "maxwell", "E0": "1 GPa", "relaxation_time": "1 us", "poisson": 0.4}
     document["map"]["materials"][1]["sample"] = fluid
     document["map"]["interphase"] = "0 nm"

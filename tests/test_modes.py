@@ -17,9 +17,9 @@ from softafm import modes
 from softafm.checks.refusals import ConfigError
 from softafm.draw.results import plot
 from softafm.experiment import schema
-from softafm.experiment.config import experiment_from
-from softafm.experiment.regime import expected_seconds, rows
-from softafm.modes.start import solver_of
+from softafm.experiment.config import build_experiment
+from softafm.experiment.regime import estimate_seconds, list_rows
+from softafm.modes.start import choose_solver
 from softafm.sweeps.reading import make_campaign, read_table
 from softafm.units.quantities import LENGTH, SPEED
 
@@ -82,7 +82,7 @@ def load_curve(contact, deepest, count=4, ramp=Ramp(), *, solver=None, tolerance
 
 
 def press_to_all(inputs, settings):
-    asked, solver, forces = inputs.motion, solver_of(settings.solver), []
+    asked, solver, forces = inputs.motion, choose_solver(settings.solver), []
     for depth in asked.depths:
         ramp = sa.Triangle(5e-9, -depth, inputs.tables["ramp"].speed)
         history = solver.solve(inputs.contact, ramp, tolerance=settings.tolerance)
@@ -141,15 +141,15 @@ def test_a_mode_with_a_coordinate_of_its_own_runs_from_python_and_from_a_file(lo
     result = load_curve(SOFT, 300e-9, 3, Ramp(2e-6))
     hertz = [sa.indentation.force(SOFT.tip, depth, 1e6 / 0.75) for depth in result.depth.values]
     np.testing.assert_allclose(result.largest_load.values, hertz, rtol=0.02)
-    experiment = experiment_from(FILE, Path())
+    experiment = build_experiment(FILE, Path())
     xr.testing.assert_equal(experiment.run(), result)
     np.testing.assert_array_equal(
         experiment.observables()["largest_load"], result.largest_load.values
     )
     single = replace(experiment, motion=Depths(300e-9, 1))
-    assert expected_seconds(experiment) == pytest.approx(3 * expected_seconds(single))
+    assert estimate_seconds(experiment) == pytest.approx(3 * estimate_seconds(single))
     assert json.loads(result.attrs["experiment"])["ramp"] == {"kind": "ramp", "speed": 2e-6}
-    assert rows(experiment)[-1].words.startswith("some 3 ramps; ")
+    assert list_rows(experiment)[-1].words.startswith("some 3 ramps; ")
 
 
 @pytest.mark.usefixtures("loads")
@@ -196,19 +196,19 @@ def test_the_page_draws_it_and_offers_no_movie(loads):
         "Depth below the flat surface"
     ]
     with pytest.raises(ConfigError, match=r"^run.profiles = True: of no use with mode = 'load-c"):
-        experiment_from({**FILE, "run": {"profiles": True}}, Path())
+        build_experiment({**FILE, "run": {"profiles": True}}, Path())
 
 
 @pytest.mark.usefixtures("loads")
 def test_its_further_table_is_asked_for_and_refused_in_a_line():
     from softafm.app.form import describe_section, list_tables
-    from softafm.app.python_lines import python_lines
+    from softafm.app.python_lines import write_python
 
     assert list_tables("load-curve")[4:] == ("ramp", "solver", "run")
     (speed,) = describe_section("ramp", None, "load-curve").fields.values()
     assert (speed.unit, speed.default, speed.help) == ("m/s", "1 µm/s", "Speed of the tip, m/s.")
-    assert "ramp=Ramp(speed=2e-6)" in python_lines(FILE, Path())
-    assert "from test_modes import Ramp" in python_lines(FILE, Path())
+    assert "ramp=Ramp(speed=2e-6)" in write_python(FILE, Path())
+    assert "from test_modes import Ramp" in write_python(FILE, Path())
     without = {name: table for name, table in FILE.items() if name != "ramp"}
     for ramp, line in (
         ({}, "ramp: missing; add a table"),
@@ -217,7 +217,7 @@ def test_its_further_table_is_asked_for_and_refused_in_a_line():
         ({"mode": "force-distance", "ramp": {}}, "ramp: unknown key"),
     ):
         with pytest.raises(ConfigError, match="^" + re.escape(line)):
-            experiment_from({**without, **ramp}, Path())
+            build_experiment({**without, **ramp}, Path())
 
 
 def test_results_of_a_mode_that_is_not_registered_are_refused(tmp_path):
@@ -270,11 +270,11 @@ def test_a_name_means_the_same_in_all_results():
 def test_fields_of_a_dataclass_are_written_by_their_types(field, written, value):
     made = make_dataclass("Made", [("field", field)], namespace={"kind": "made"}, frozen=True)
     assert (
-        schema.built("made", {"field": written}, schema.read_table(made), folder=Path()).field
+        schema.build_kind("made", {"field": written}, schema.read_table(made), folder=Path()).field
         == value
     )
     with pytest.raises(ConfigError, match=r"^made\.field = \{\}: must be "):
-        schema.built("made", {"field": {}}, schema.read_table(made), folder=Path())
+        schema.build_kind("made", {"field": {}}, schema.read_table(made), folder=Path())
 
 
 def test_a_dimension_needs_a_meaning():
@@ -305,4 +305,4 @@ def test_a_motion_that_no_file_can_describe_is_refused():
     with modes_restored():
         modes.register(odd)
         with pytest.raises(ValueError, match=r"field phase: .*complex.* cannot be written"):
-            experiment_from({**FILE, "motion": {"phase": 1}}, Path())
+            build_experiment({**FILE, "motion": {"phase": 1}}, Path())

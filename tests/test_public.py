@@ -10,9 +10,9 @@ import numpy as np
 import pytest
 
 import softafm as sa
-from softafm.experiment.config import Experiment, example_text
+from softafm.experiment.config import Experiment, read_example
 
-TAP = tomllib.loads(example_text("ldpe-tapping"))
+TAP = tomllib.loads(read_example("ldpe-tapping"))
 GENTLE = """
 mode = "force-distance"
 [tip]
@@ -128,7 +128,7 @@ def test_an_experiment_takes_no_overrides(gentle):
 
 def test_a_map_file_is_loaded_and_run(tmp_path):
     path = tmp_path / "blend.toml"
-    path.write_text(example_text("blend"), encoding="utf-8")
+    path.write_text(read_example("blend"), encoding="utf-8")
     experiment = sa.load_map(path, SMALL)
     assert experiment.run().sizes == {"y": 1, "x": 2}
 
@@ -163,7 +163,7 @@ def test_the_regime_holds_the_scales_of_the_contact():
 
 def test_the_regime_prints_as_the_command_line_shows_it(tmp_path, softafm):
     path = tmp_path / "tap.toml"
-    path.write_text(example_text("ldpe-tapping"), encoding="utf-8")
+    path.write_text(read_example("ldpe-tapping"), encoding="utf-8")
     code, out, _ = softafm("info", str(path))
     said = str(sa.regime(path))
     assert code == 0
@@ -231,7 +231,7 @@ def test_a_result_of_another_mode_is_no_reference(pressed):
 
 def test_a_figure_without_tip_heights_takes_no_closed_form(tmp_path):
     path = tmp_path / "blend.toml"
-    path.write_text(example_text("blend"), encoding="utf-8")
+    path.write_text(read_example("blend"), encoding="utf-8")
     image = sa.load_map(path, SMALL).run()
     with pytest.raises(ValueError, match="mode = amplitude-modulation has no axis of tip height"):
         sa.plot(image, reference=([0, 1e-9], [0, 1e-9]))

@@ -11,7 +11,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import softafm as sa
-from softafm.experiment.config import example_text, load_experiment
+from softafm.experiment.config import load_experiment, read_example
 
 W, Z0 = 0.05, 0.3e-9
 LAWS = [
@@ -227,7 +227,7 @@ def test_the_page_on_soft_contacts_runs(tmp_path):
 @pytest.fixture
 def soft_file(tmp_path):
     path = tmp_path / "soft.toml"
-    path.write_text(example_text("pdms-sphere"), encoding="utf-8")
+    path.write_text(read_example("pdms-sphere"), encoding="utf-8")
     return path
 
 

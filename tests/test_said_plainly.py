@@ -4,14 +4,14 @@ import os
 
 import pytest
 
-from softafm.experiment.config import ConfigError, example_text, load_experiment
+from softafm.experiment.config import ConfigError, load_experiment, read_example
 from softafm.units.quantities import ENERGY, LENGTH, read_quantity
 
 
 @pytest.fixture
 def file(tmp_path):
     path = tmp_path / "tap.toml"
-    path.write_text(example_text("ldpe-tapping"))
+    path.write_text(read_example("ldpe-tapping"))
     return path
 
 

@@ -7,7 +7,7 @@ import pytest
 from softafm.checks.refusals import ConfigError
 from softafm.checks.suggestions import guess
 from softafm.experiment import schema
-from softafm.experiment.config import document_from, example_text, experiment_from
+from softafm.experiment.config import build_experiment, parse_document, read_example
 from softafm.modes import MODES
 
 MODELS = list(schema.CHOICES["sample"][1])
@@ -95,8 +95,8 @@ def test_every_other_word_leads_to_a_name_that_exists():
     ],
 )  # fmt: skip
 def test_files_are_refused_with_what_was_meant(old, new, line):
-    text = example_text("ldpe-tapping")
+    text = read_example("ldpe-tapping")
     assert old in text
     with pytest.raises(ConfigError) as refused:
-        experiment_from(document_from(text.replace(old, new), "file"), Path())
+        build_experiment(parse_document(text.replace(old, new), "file"), Path())
     assert any(each.startswith(line) for each in str(refused.value).splitlines())

@@ -15,7 +15,7 @@ from scipy.integrate import quad
 import softafm as sa
 from softafm import surfaces
 from softafm.draw.law import plot_surface
-from softafm.solvers.energy.surface import gap_origin
+from softafm.solvers.energy.surface import find_gap_origin
 
 W, Z0 = 0.05, 3e-10
 LJ = surfaces.LennardJones.from_work_of_adhesion(W, Z0)
@@ -160,7 +160,7 @@ def test_tension_is_largest_where_the_law_says(kind, data):
 def test_laws_repel_ever_more_at_all_gaps_that_the_solver_tries(kind, data):
     law = data.draw(WELLS[kind])
     origin = max(
-        gap_origin(sa.Contact(sa.Paraboloid(1e-8), sa.Elastic(1e9, 0.3), law)), law.closest_gap
+        find_gap_origin(sa.Contact(sa.Paraboloid(1e-8), sa.Elastic(1e9, 0.3), law)), law.closest_gap
     )
     tried = origin + (law.equilibrium_gap - origin) * np.linspace(0.1, 0.999, 500)
     pressure = law.pressure(tried)

@@ -12,11 +12,11 @@ import xarray
 from swept import XS, YS, calm
 
 import softafm as sa
-from softafm.experiment.config import example_text
+from softafm.experiment.config import read_example
 from softafm.sweeps import sweep as sweeps
 from softafm.sweeps.store import Store
 
-TAP = tomllib.loads(example_text("ldpe-tapping"))
+TAP = tomllib.loads(read_example("ldpe-tapping"))
 HEIGHTS = ["42 nm", "43 nm", "44 nm"]
 GRID = {"x": XS, "y": YS}
 
@@ -26,7 +26,7 @@ def folder(tmp_path, monkeypatch):
     """An empty current directory with a campaign."""
     monkeypatch.chdir(tmp_path)
     monkeypatch.setenv("COLUMNS", "200")
-    text = example_text("ldpe-tapping") + f"[sweep.vary]\nmotion.mean_height = {HEIGHTS}\n"
+    text = read_example("ldpe-tapping") + f"[sweep.vary]\nmotion.mean_height = {HEIGHTS}\n"
     (tmp_path / "c.toml").write_text(text, encoding="utf-8")
     return tmp_path
 
@@ -68,7 +68,7 @@ def test_an_approach_curve_can_be_swept():
     def curve(document):
         return sa.sweep(document, {"sample.creep_time": ["1 us"]}, workers=0)
 
-    document = tomllib.loads(example_text("ps-approach-curve"))
+    document = tomllib.loads(read_example("ps-approach-curve"))
     document["motion"] = {"free_amplitude": "15 nm", "amplitude_ratio": [0.8]}
     document["run"] = {"tolerance": 0.05}
     found = curve(document)

@@ -16,7 +16,7 @@ import pytest
 from swept import XS, YS, calm, deadly
 
 import softafm as sa
-from softafm.experiment.config import example_text
+from softafm.experiment.config import read_example
 from softafm.sweeps.execution import Halted
 from softafm.sweeps.progress import read_status
 
@@ -26,7 +26,7 @@ pytestmark = pytest.mark.skipif(os.name != "posix", reason="kills as POSIX does"
 
 CALL = [sys.executable, "-c", "import sys; from softafm.cli import main; sys.exit(main())"]
 CAMPAIGN = (
-    example_text("ldpe-tapping")
+    read_example("ldpe-tapping")
     + """
 [sweep]
 batch = 5

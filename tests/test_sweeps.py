@@ -8,7 +8,7 @@ import xarray as xr
 
 import softafm as sa
 from softafm.draw.approach_data import find_jumps
-from softafm.modes.driven import deepest_tap, drive_of
+from softafm.modes.driven import estimate_deepest_tap, make_drive
 
 
 @pytest.fixture(autouse=True)
@@ -70,7 +70,7 @@ LEVER = sa.Cantilever(28.1, quality_factor=429.5, frequency=278e3)
 
 @pytest.mark.parametrize("frequency", [277.5e3, 278e3, 278.4e3])
 def test_the_strongest_push_and_the_most_dissipation_are_on_the_curve(frequency):
-    drive, found = drive_of(LEVER, 15e-9, frequency)
+    drive, found = make_drive(LEVER, 15e-9, frequency)
     assert found == frequency
     amplitude = np.array([3e-9, 7e-9, 9e-9])
     push = drive.strongest_push(amplitude)
@@ -84,7 +84,7 @@ def test_the_strongest_push_and_the_most_dissipation_are_on_the_curve(frequency)
 
 
 def test_the_most_dissipation_at_resonance():
-    drive, _ = drive_of(LEVER, 15e-9)
+    drive, _ = make_drive(LEVER, 15e-9)
     assert drive.most_dissipation == pytest.approx(pi * 28.1 * 15e-9**2 / (4 * 429.5))
 
 
@@ -93,8 +93,8 @@ def test_the_deepest_tap_is_foreseen(hamaker, z0, within):
     """Closely where adhesion and its range count little, else by order of magnitude."""
     contact = sa.Contact(sa.Paraboloid(50e-9), sa.Elastic(2e9, 0.35), sa.LennardJones(hamaker, z0))
     ratios = np.linspace(0.95, 0.2, 16)
-    drive, frequency = drive_of(LEVER, 15e-9)
-    expected = deepest_tap(contact, drive, frequency, 15e-9 * ratios)
+    drive, frequency = make_drive(LEVER, 15e-9)
+    expected = estimate_deepest_tap(contact, drive, frequency, 15e-9 * ratios)
     found = sa.approach_curve(contact, LEVER, 15e-9, ratios, tolerance=0.05)
     repulsive = found.sel(branch="repulsive")
     lowest = float((repulsive.mean_height - 15e-9 * repulsive.amplitude_ratio).min())

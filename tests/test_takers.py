@@ -2,7 +2,7 @@
 
 import pytest
 
-from softafm.experiment.config import example_text
+from softafm.experiment.config import read_example
 
 SWEPT = '\n[sweep.vary]\n"sample.E0" = ["1 GPa", "2 GPa"]\n'
 
@@ -10,10 +10,10 @@ SWEPT = '\n[sweep.vary]\n"sample.E0" = ["1 GPa", "2 GPa"]\n'
 @pytest.fixture
 def folder(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
-    (tmp_path / "tap.toml").write_text(example_text("ldpe-tapping"), encoding="utf-8")
-    (tmp_path / "map.toml").write_text(example_text("blend"), encoding="utf-8")
-    (tmp_path / "campaign.toml").write_text(example_text("ldpe-tapping") + SWEPT, encoding="utf-8")
-    half = example_text("blend").replace("[map", "[amp")
+    (tmp_path / "tap.toml").write_text(read_example("ldpe-tapping"), encoding="utf-8")
+    (tmp_path / "map.toml").write_text(read_example("blend"), encoding="utf-8")
+    (tmp_path / "campaign.toml").write_text(read_example("ldpe-tapping") + SWEPT, encoding="utf-8")
+    half = read_example("blend").replace("[map", "[amp")
     (tmp_path / "half-a-map.toml").write_text(half, encoding="utf-8")
     (tmp_path / "tap.nc").write_bytes(b"\x89HDF\r\n\x1a\n")
     (tmp_path / "campaign.zarr").mkdir()

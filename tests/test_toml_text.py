@@ -8,9 +8,9 @@ import pytest
 from softafm.experiment.config import (
     ConfigError,
     build_table,
-    document_from,
-    example_names,
-    example_text,
+    list_examples,
+    parse_document,
+    read_example,
     set_value,
 )
 from softafm.experiment.toml_text import parse, parse_apart
@@ -40,7 +40,7 @@ def test_too_much_is_refused_soon(kind):
     text, words = TOO_MUCH[kind]
     started = time.monotonic()
     with pytest.raises(ConfigError) as caught:
-        document_from(text, "x.toml")
+        parse_document(text, "x.toml")
     assert time.monotonic() - started < 10
     assert str(caught.value).startswith("x.toml: ")
     assert words in str(caught.value)
@@ -48,8 +48,8 @@ def test_too_much_is_refused_soon(kind):
 
 
 def test_what_files_hold_is_parsed_as_ever():
-    for name in example_names():
-        assert parse(example_text(name)) == tomllib.loads(example_text(name))
+    for name in list_examples():
+        assert parse(read_example(name)) == tomllib.loads(read_example(name))
     long = "x = '" + "a.b " * 1000 + "'\ny = [" + "1.5, " * 10_000 + "]\n" + "# e.g. this\n" * 1000
     assert parse(long) == tomllib.loads(long)
     assert parse("a.b.c.d.e.f.g = 1") == tomllib.loads("a.b.c.d.e.f.g = 1")

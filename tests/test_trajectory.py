@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 
 import softafm as sa
 from softafm.files.measured import read_path, read_trajectory
-from softafm.instrument.motions import lowest_height
+from softafm.instrument.motions import find_lowest_height
 
 CONTACT = sa.Contact(
     tip=sa.Paraboloid(10e-9),
@@ -105,7 +105,7 @@ def test_between_the_samples_a_path_is_straight_or_smooth():
 def test_the_lowest_height_of_a_slow_dip_with_a_flat_bottom_is_found():
     # All its changes of velocity are far below those of the fast approach.
     motion = sa.Trajectory([0, 1, 2, 3, 4], [9e-6, 9e-9, 1e-9, 1e-9, 9e-9])
-    assert lowest_height(motion) == 1e-9
+    assert find_lowest_height(motion) == 1e-9
 
 
 # Records with noise

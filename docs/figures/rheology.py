@@ -12,7 +12,7 @@ from softafm.rheology import (
     GeneralizedMaxwell,
     PowerLaw,
     chain_to_prony,
-    dma_misfit,
+    measure_misfit,
     prony_to_chain,
 )
 
@@ -75,9 +75,9 @@ def fit() -> None:
     """Print the misfit to synthetic data and draw it."""
     data = measured()
     sample = GeneralizedMaxwell.from_dma(*data, poisson=0.49)
-    largest, rms = dma_misfit(sample, *data)
+    largest, rms = measure_misfit(sample, *data)
     print(f"fit: {len(sample.moduli)} terms, misfit {100 * largest:.2g} %, rms {100 * rms:.2g} %")
-    print(f"off the noiseless moduli: rms {100 * dma_misfit(sample, *measured(0))[1]:.2g} %")
+    print(f"off the noiseless moduli: rms {100 * measure_misfit(sample, *measured(0))[1]:.2g} %")
     path = IMAGES / "rheology-fit.png"
     plot_rheology(sample, data=data).savefig(path, dpi=120)
     Image.open(path).convert("RGB").quantize(64).save(path, optimize=True)

@@ -9,7 +9,7 @@ import shutil
 import tempfile
 from pathlib import Path
 
-from softafm.experiment.config import example_text
+from softafm.experiment.config import read_example
 
 DOCS = Path(__file__).parents[1]
 
@@ -22,7 +22,7 @@ def run(page):
 def main():
     with tempfile.TemporaryDirectory() as folder:
         os.chdir(folder)
-        Path("ldpe-tapping.toml").write_text(example_text("ldpe-tapping"), encoding="utf-8")
+        Path("ldpe-tapping.toml").write_text(read_example("ldpe-tapping"), encoding="utf-8")
         run("first-force-curve.md")
         run("first-tap.md")
         shutil.copy("curve.png", DOCS / "images" / "first-force-curve.png")

@@ -133,12 +133,12 @@ def scan(
 ) -> None:
     """Image the sample of a map file, save the maps and show their ranges."""
     with _report_bad_input():
-        from softafm.checks.validate import whole
+        from softafm.checks.validate import check_whole
         from softafm.draw.summary import list_observables
         from softafm.maps.map_file import load_map
         from softafm.results import datasets as results
 
-        workers = _count_cores() if workers is None else whole("--workers", workers, 1, 1024)
+        workers = _count_cores() if workers is None else check_whole("--workers", workers, 1, 1024)
         experiment = load_map(config, overrides or [])
         out = _choose_output(out, f"{config.stem}.nc", (".nc",), force)
     dataset = _carry_out("scan", partial(experiment.run, workers))
@@ -174,19 +174,19 @@ def example(
     force: Force = False,
 ) -> None:
     """List the bundled experiment and map files, or write one to start from."""
-    from softafm.experiment.config import example_names, example_text, map_names
+    from softafm.experiment.config import list_examples, list_maps, read_example
 
     if name is None:
-        for known in [*example_names(), *map_names()]:
-            title = example_text(known).splitlines()[0].lstrip("# ")
+        for known in [*list_examples(), *list_maps()]:
+            title = read_example(known).splitlines()[0].lstrip("# ")
             typer.echo(f"{known:20} {title}")
         typer.echo("write one with: softafm example NAME")
         return
     with _report_bad_input():
-        text = example_text(name)
+        text = read_example(name)
         out = _choose_output(out, f"{name}.toml", (".toml",), force)
     _save_content(text.encode(), out, force)
-    command = "scan" if name in map_names() else "run"
+    command = "scan" if name in list_maps() else "run"
     typer.echo(f"wrote {out}; run it with: softafm {command} {out}")
 
 
@@ -522,9 +522,9 @@ def _print(renderable) -> None:
 @contextmanager
 def _show_progress() -> Iterator[Callable[[float, str], None]]:
     """Yield a function for a run to report progress to: a bar on a terminal. Ctrl-C ends a run."""
-    from softafm.progress import reporting
+    from softafm.progress import make_reporter
 
-    with _heed_interrupts() as heed, reporting(sys.stderr.isatty()) as report:
+    with _heed_interrupts() as heed, make_reporter(sys.stderr.isatty()) as report:
 
         def progress(fraction: float, message: str) -> None:
             heed()

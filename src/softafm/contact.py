@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike
 from softafm.bodies import Body
 from softafm.bodies.body import body_of
 from softafm.checks.kinds import refuse_other
-from softafm.checks.validate import tabor_of
+from softafm.checks.validate import check_tabor
 from softafm.rheology import Solid
 from softafm.surfaces import SurfaceLaw
 from softafm.surfaces.limits import LONGEST
@@ -176,7 +176,7 @@ class Contact:
             If the number is not from 0.1 to 100, there is no adhesion, or the law has no longer
             range.
         """
-        tabor = tabor_of("tabor", tabor)
+        tabor = check_tabor("tabor", tabor)
         if not self.adhesive:
             raise ValueError(
                 f"surface law '{self.surface.kind}': has no adhesion, so no Tabor number that a "

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import ArrayLike
 
-from softafm.checks.validate import positive, refuse_masked
+from softafm.checks.validate import check_positive, refuse_masked
 
 if TYPE_CHECKING:
     from softafm.tips import Tip
@@ -35,8 +35,8 @@ def depth(tip: "Tip", contact_radius: ArrayLike) -> np.ndarray:
     ----------
     I. N. Sneddon, *Int. J. Eng. Sci.* 3, 47 (1965).
     """
-    radius = _not_negative("contact_radius", contact_radius)
-    return (radius * _mean_slopes(tip, radius)[0])[()]
+    radius = _check_not_negative("contact_radius", contact_radius)
+    return (radius * _average_slopes(tip, radius)[0])[()]
 
 
 def load(tip: "Tip", contact_radius: ArrayLike, modulus: float) -> np.ndarray:
@@ -53,8 +53,8 @@ def load(tip: "Tip", contact_radius: ArrayLike, modulus: float) -> np.ndarray:
     ----------
     I. N. Sneddon, *Int. J. Eng. Sci.* 3, 47 (1965).
     """
-    radius, modulus = _not_negative("contact_radius", contact_radius), _modulus(modulus)
-    return (2 * modulus * radius**2 * _mean_slopes(tip, radius)[1])[()]
+    radius, modulus = _check_not_negative("contact_radius", contact_radius), _check_modulus(modulus)
+    return (2 * modulus * radius**2 * _average_slopes(tip, radius)[1])[()]
 
 
 def jkr_depth(
@@ -75,7 +75,7 @@ def jkr_depth(
     K. L. Johnson, K. Kendall and A. D. Roberts, *Proc. R. Soc. Lond. A* 324, 301 (1971), for
     spheres; D. Maugis and M. Barquins, *J. Phys. D* 16, 1843 (1983), for any profile.
     """
-    radius = _not_negative("contact_radius", contact_radius)
+    radius = _check_not_negative("contact_radius", contact_radius)
     return (depth(tip, radius) - _stretch(radius, modulus, work_of_adhesion))[()]
 
 
@@ -86,7 +86,7 @@ def jkr_load(
 
     F(a) − √(8πE*Wa³) with F(a) as in ``load``; parameters, refusals and source as of ``jkr_depth``.
     """
-    radius = _not_negative("contact_radius", contact_radius)
+    radius = _check_not_negative("contact_radius", contact_radius)
     stretch = _stretch(radius, modulus, work_of_adhesion)
     return (load(tip, radius, modulus) - 2 * modulus * radius * stretch)[()]
 
@@ -107,7 +107,7 @@ def contact_radius(tip: "Tip", depth: ArrayLike) -> np.ndarray:
     low, high = np.zeros(deep.shape), np.array(widest).reshape(deep.shape)
     for _ in range(_HALVINGS):
         middle = (low + high) / 2
-        shallow = middle * _mean_slopes(tip, middle)[0] <= deep
+        shallow = middle * _average_slopes(tip, middle)[0] <= deep
         low, high = np.where(shallow, middle, low), np.where(shallow, high, middle)
     return low[()]
 
@@ -132,8 +132,8 @@ def hertz_force(radius: float, depth: ArrayLike, modulus: float) -> np.ndarray:
     ----------
     H. Hertz, *J. reine angew. Math.* 92, 156 (1881).
     """
-    radius, deep = positive("radius", radius, "m"), np.maximum(np.asarray(depth, float), 0.0)
-    return (4 / 3 * _modulus(modulus) * radius**0.5 * deep**1.5)[()]
+    radius, deep = check_positive("radius", radius, "m"), np.maximum(np.asarray(depth, float), 0.0)
+    return (4 / 3 * _check_modulus(modulus) * radius**0.5 * deep**1.5)[()]
 
 
 def jkr_pull_off(radius: float, work_of_adhesion: float) -> float:
@@ -145,7 +145,7 @@ def jkr_pull_off(radius: float, work_of_adhesion: float) -> float:
     ----------
     K. L. Johnson, K. Kendall and A. D. Roberts, *Proc. R. Soc. Lond. A* 324, 301 (1971).
     """
-    return -1.5 * pi * positive("radius", radius, "m") * _work(work_of_adhesion)
+    return -1.5 * pi * check_positive("radius", radius, "m") * _check_work(work_of_adhesion)
 
 
 def dmt_pull_off(radius: float, work_of_adhesion: float) -> float:
@@ -157,10 +157,10 @@ def dmt_pull_off(radius: float, work_of_adhesion: float) -> float:
     ----------
     B. V. Derjaguin, V. M. Muller and Y. P. Toporov, *J. Colloid Interface Sci.* 53, 314 (1975).
     """
-    return -2 * pi * positive("radius", radius, "m") * _work(work_of_adhesion)
+    return -2 * pi * check_positive("radius", radius, "m") * _check_work(work_of_adhesion)
 
 
-def _mean_slopes(tip: "Tip", radius: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+def _average_slopes(tip: "Tip", radius: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """∫ g'(a sin θ) dθ and ∫ g'(a sin θ) sin²θ dθ from 0 to π/2 for contact radii a.
 
     Gauss-Legendre between the joints of the profile, and ever finer towards the axis, for tips
@@ -177,18 +177,18 @@ def _mean_slopes(tip: "Tip", radius: np.ndarray) -> tuple[np.ndarray, np.ndarray
 
 
 def _stretch(radius: np.ndarray, modulus: float, work_of_adhesion: float) -> np.ndarray:
-    return np.sqrt(2 * pi * radius * _work(work_of_adhesion) / _modulus(modulus))
+    return np.sqrt(2 * pi * radius * _check_work(work_of_adhesion) / _check_modulus(modulus))
 
 
-def _modulus(value: float) -> float:
-    return positive("modulus", value, "Pa")
+def _check_modulus(value: float) -> float:
+    return check_positive("modulus", value, "Pa")
 
 
-def _work(value: float) -> float:
-    return positive("work_of_adhesion", value, "J/m²")
+def _check_work(value: float) -> float:
+    return check_positive("work_of_adhesion", value, "J/m²")
 
 
-def _not_negative(name: str, values: ArrayLike) -> np.ndarray:
+def _check_not_negative(name: str, values: ArrayLike) -> np.ndarray:
     refuse_masked(name, values)
     array = np.asarray(values, float)
     bad = ~(np.isfinite(array) & (array >= 0))

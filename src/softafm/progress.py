@@ -13,7 +13,7 @@ Progress = Callable[[float, str], None]
 
 
 @contextmanager
-def reporting(progress: bool | Progress | None) -> Iterator[Progress | None]:
+def make_reporter(progress: bool | Progress | None) -> Iterator[Progress | None]:
     """Turn a mode's ``progress`` argument into a callable (fraction, message), or None.
 
     True gives a bar on stderr that appears after one second and vanishes at the end.

@@ -5,7 +5,7 @@ Every function returns a sample of ``softafm.rheology``; what a source does not 
 
 from collections.abc import Callable
 
-from softafm.checks.validate import finite
+from softafm.checks.validate import check_finite
 from softafm.rheology import Elastic, GeneralizedMaxwell, Solid, StandardLinearSolid
 
 
@@ -55,7 +55,7 @@ def pdms(mixing_ratio: float = 10.0) -> Elastic:
     Z. Wang, A. A. Volinsky and N. D. Gallant, J. Appl. Polym. Sci. 131, 41050 (2014).
     I. D. Johnston et al., J. Micromech. Microeng. 24, 035017 (2014).
     """
-    ratio = finite("mixing_ratio", mixing_ratio, "")
+    ratio = check_finite("mixing_ratio", mixing_ratio, "")
     if not 5 <= ratio <= 33:
         raise ValueError(f"mixing_ratio = {ratio:g}: must be from 5 to 33, as was measured")
     return Elastic(E=20e6 / ratio, poisson=0.5)

@@ -54,30 +54,30 @@ def collect_parts(result: "Dataset") -> Parts | None:
         return _collect_approach_curve(result) if result.sizes["sweep_height"] else None
     if "time" in result.dims and result.sizes["time"] > 1:
         return _collect_history(result)
-    return _curve_parts(result)
+    return _collect_curve(result)
 
 
-def panels_of(result: "Dataset") -> tuple[tuple[str, str], ...]:
+def find_panels(result: "Dataset") -> tuple[tuple[str, str], ...]:
     """Return for each panel of a result's figure what is drawn against what; () if not known."""
     mode = MODES.get(str(result.attrs.get("mode")))
     return () if mode is None else mode.figure.panels
 
 
-def axis_of(name: str) -> tuple[str, str | None]:
+def find_axis(name: str) -> tuple[str, str | None]:
     """Return the title of the axis of a column, and its unit if it takes prefixes."""
-    return approach_data.AXES[name] if name in approach_data.AXES else histories.axis_of(name)
+    return approach_data.AXES[name] if name in approach_data.AXES else histories.find_axis(name)
 
 
-def _curve_parts(result: "Dataset") -> Parts | None:
+def _collect_curve(result: "Dataset") -> Parts | None:
     """Return the curves over the coordinate of the first panel."""
-    names = dict.fromkeys(name for panel in panels_of(result) for name in panel if name in result)
+    names = dict.fromkeys(name for panel in find_panels(result) for name in panel if name in result)
     along = result[next(iter(names))].dims if names else ()
     columns = {name: result[name].values for name in names if result[name].dims == along}
     return Parts({"curve": columns}, {}, {}) if len(along) == 1 and len(columns) > 1 else None
 
 
 def _collect_history(result: "Dataset") -> Parts:
-    drawn = dict.fromkeys([*histories.AXES, *(n for panel in panels_of(result) for n in panel)])
+    drawn = dict.fromkeys([*histories.AXES, *(n for panel in find_panels(result) for n in panel)])
     columns = {
         name: result[name].values
         for name in drawn

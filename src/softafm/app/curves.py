@@ -21,7 +21,7 @@ from bokeh.models import (
 from bokeh.plotting import figure as new_figure
 
 from softafm.app.colours import Theme, in_role, recolour
-from softafm.app.curve_data import Parts, axis_of, collect_parts, panels_of
+from softafm.app.curve_data import Parts, collect_parts, find_axis, find_panels
 from softafm.draw import histories
 from softafm.modes import MODES
 from softafm.units.quantities import choose_prefix
@@ -95,7 +95,7 @@ def draw_figures(shown: Sequence[Shown], theme: Theme) -> dict[str, LayoutDOM]:
     units = _choose_units([parts for _, parts in drawable])
     drawn = [(one.result, _scale(one, parts, units)) for one, parts in drawable]
     tabs = {}
-    for title, (abscissa, ordinates) in _tabs([result for result, _ in drawn]).items():
+    for title, (abscissa, ordinates) in _list_tabs([result for result, _ in drawn]).items():
         runs = [(result, run) for result, run in drawn if run.parts.holds(abscissa)]
         if runs:
             shape = _choose_window([result for result, _ in runs], abscissa)
@@ -105,13 +105,13 @@ def draw_figures(shown: Sequence[Shown], theme: Theme) -> dict[str, LayoutDOM]:
     return tabs
 
 
-def _tabs(results: Sequence["Dataset"]) -> dict[str, tuple[str, tuple[str, ...]]]:
+def _list_tabs(results: Sequence["Dataset"]) -> dict[str, tuple[str, tuple[str, ...]]]:
     """Return the tabs, with what the figures of modes show beyond the usual."""
     found = dict(TABS)
     titles = {abscissa: title for title, (abscissa, _) in reversed(TABS.items())}
     for result in results:
-        for abscissa, ordinate in panels_of(result):
-            title = titles.setdefault(abscissa, axis_of(abscissa)[0])
+        for abscissa, ordinate in find_panels(result):
+            title = titles.setdefault(abscissa, find_axis(abscissa)[0])
             before = found.get(title, (abscissa, ()))[1]
             if ordinate not in before and {abscissa, ordinate} <= set(result.variables):
                 found[title] = abscissa, (*before, ordinate)
@@ -122,7 +122,7 @@ def _choose_units(parts: Sequence[Parts]) -> dict[str, tuple[float, str]]:
     """Return for each quantity the factor from SI to the unit of its axis, and the unit."""
     units = {}
     for name in dict.fromkeys(name for one in parts for name in one.names):
-        unit = axis_of(name)[1]
+        unit = find_axis(name)[1]
         held = [one.extent(name) for one in parts if one.holds(name)]
         largest = max((abs(end) for extent in held for end in extent if abs(end) < inf), default=0)
         units[name] = (1.0, "") if unit is None else choose_prefix(largest, unit)
@@ -206,7 +206,7 @@ def _draw_tab(
 
 
 def _write_label(name: str, units: dict[str, tuple[float, str]]) -> str:
-    title, unit = axis_of(name)[0], units[name][1]
+    title, unit = find_axis(name)[0], units[name][1]
     return f"{title} ({unit})" if unit else title
 
 
@@ -308,7 +308,7 @@ def _make_hover(
     """Show the run and, in their units, what is drawn and when it was."""
     columns = set.intersection(*(set(renderer.data_source.data) for renderer in renderers))
     names = dict.fromkeys([x, y, *({"time"} & columns)])
-    tips = [(axis_of(name)[0], f"@{name}{{%.4g}} {units[name][1]}".strip()) for name in names]
+    tips = [(find_axis(name)[0], f"@{name}{{%.4g}} {units[name][1]}".strip()) for name in names]
     return HoverTool(
         renderers=renderers,
         tooltips=[("Run", "$name"), *tips],

@@ -3,7 +3,7 @@
 from collections.abc import Mapping
 from typing import Any
 
-from softafm.checks.refusals import ConfigError, shown
+from softafm.checks.refusals import ConfigError, show
 
 _SEPARATORS = ("/", "\\", ":", "\0")
 
@@ -11,7 +11,7 @@ _SEPARATORS = ("/", "\\", ":", "\0")
 def refuse_paths(document: Mapping[str, Any]) -> None:
     """Raise ConfigError if a ``file`` anywhere in a document is more than a plain name."""
     lines = [
-        f"{path} = {shown(name)}: must be the plain name of a file that was uploaded"
+        f"{path} = {show(name)}: must be the plain name of a file that was uploaded"
         for path, name in _find_files(document, "")
         if name in (".", "..") or any(mark in name for mark in _SEPARATORS)
     ]

@@ -8,7 +8,7 @@ from typing import Any, get_args
 
 from softafm.app.help_texts import find_help, find_summary
 from softafm.experiment import schema
-from softafm.experiment.config import document_from, example_names, example_text
+from softafm.experiment.config import list_examples, parse_document, read_example
 from softafm.experiment.entries import Input
 from softafm.modes import MODES
 from softafm.units.quantities import choose_prefix
@@ -93,7 +93,7 @@ class Section:
 
 def read_presets() -> dict[str, dict[str, Any]]:
     """Return the bundled experiments by name, as documents of their own without empty tables."""
-    files = {name: document_from(example_text(name), name) for name in example_names()}
+    files = {name: parse_document(read_example(name), name) for name in list_examples()}
     return {
         name: {key: value for key, value in document.items() if value != {}}
         for name, document in files.items()
@@ -103,7 +103,7 @@ def read_presets() -> dict[str, dict[str, Any]]:
 @cache
 def read_preset_titles() -> dict[str, str]:
     """Return what each bundled experiment is about, by name."""
-    return {name: example_text(name).partition("\n")[0].lstrip("# ") for name in example_names()}
+    return {name: read_example(name).partition("\n")[0].lstrip("# ") for name in list_examples()}
 
 
 def list_tables(mode: object) -> tuple[str, ...]:

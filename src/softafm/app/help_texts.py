@@ -38,9 +38,9 @@ _STANDS_FOR: dict[Any, tuple[Callable, ...]] = {
     schema.ResonatorTable: (Cantilever,),
     schema.Run: (force_distance,),
     schema.SumSurface: (SumOfLaws,),
-    schema.measured_tip: (read_tip_profile,),
-    schema.measured_moduli: (GeneralizedMaxwell.from_dma, GeneralizedMaxwell, read_dma),
-    schema.tabulated: (read_law,),
+    schema.use_measured_tip: (read_tip_profile,),
+    schema.fit_measured_moduli: (GeneralizedMaxwell.from_dma, GeneralizedMaxwell, read_dma),
+    schema.use_tabulated_law: (read_law,),
 }
 """What documents the keys of hand-written tables, and of functions that build."""
 

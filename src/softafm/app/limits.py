@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 
-from softafm.checks.validate import positive, whole
+from softafm.checks.validate import check_positive, check_whole
 
 
 @dataclass(frozen=True)
@@ -39,9 +39,9 @@ class Limits:
     kept_bytes: int = 500_000_000
 
     def __post_init__(self) -> None:
-        whole("processes", self.processes, 1, 256)
-        whole("waiting", self.waiting, 1, 10_000)
-        whole("listed", self.listed, 1, 1000)
-        positive("run_seconds", self.run_seconds, "s")
-        whole("upload_bytes", self.upload_bytes, 1000, 2_000_000_000)
-        whole("kept_bytes", self.kept_bytes, 1000, 10**12)
+        check_whole("processes", self.processes, 1, 256)
+        check_whole("waiting", self.waiting, 1, 10_000)
+        check_whole("listed", self.listed, 1, 1000)
+        check_positive("run_seconds", self.run_seconds, "s")
+        check_whole("upload_bytes", self.upload_bytes, 1000, 2_000_000_000)
+        check_whole("kept_bytes", self.kept_bytes, 1000, 10**12)

@@ -7,7 +7,7 @@ from typing import Any
 from urllib.parse import parse_qsl, urlencode
 
 from softafm.checks.refusals import ConfigError
-from softafm.experiment.config import set_value, value_of
+from softafm.experiment.config import parse_value, set_value
 
 LONGEST = 16_000
 _MOST_VALUES = 200
@@ -73,7 +73,7 @@ def _list_pairs(document: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
 
 def _write_value(value: Any) -> str:
     """Return text as it is where it is read back as such, and anything else as in TOML."""
-    if isinstance(value, str) and value == value.strip() and value_of(value) == value:
+    if isinstance(value, str) and value == value.strip() and parse_value(value) == value:
         return value
     return _write_toml(value)
 

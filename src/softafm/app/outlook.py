@@ -8,9 +8,9 @@ from typing import Any
 
 from softafm.app.files import refuse_paths
 from softafm.app.form import list_tables
-from softafm.checks.refusals import ConfigError, shown
-from softafm.experiment.config import experiment_from
-from softafm.experiment.regime import expected_seconds, rows
+from softafm.checks.refusals import ConfigError, show
+from softafm.experiment.config import build_experiment
+from softafm.experiment.regime import estimate_seconds, list_rows
 from softafm.experiment.scales import Row
 
 _OPTIONAL = ("solver", "run")
@@ -38,11 +38,11 @@ def foresee(document: Mapping[str, Any], folder: Path) -> Outlook:
     whole = {**dict(document), **{name: {} for name in needed if name not in document}}
     try:
         refuse_paths(whole)
-        experiment = experiment_from(whole, folder)
+        experiment = build_experiment(whole, folder)
     except ConfigError as error:
         return Outlook(problems=_sort_by_path(str(error).splitlines(), whole))
     try:
-        return Outlook({}, tuple(rows(experiment)), expected_seconds(experiment))
+        return Outlook({}, tuple(list_rows(experiment)), estimate_seconds(experiment))
     except (ValueError, ArithmeticError, RuntimeError) as error:
         return Outlook(problems={"mode": f"cannot be foreseen: {error}"})
 
@@ -74,7 +74,7 @@ def _sort_by_path(lines: list[str], document: Mapping[str, Any]) -> dict[str, st
 
 def _part_line(line: str, places: list[tuple[str, Any]]) -> tuple[str, str]:
     for path, value in places:
-        for start in (f"{path} = {shown(value)}: ", f"{path[:_LONGEST_PATH]}: "):
+        for start in (f"{path} = {show(value)}: ", f"{path[:_LONGEST_PATH]}: "):
             # A ConfigError escapes what cannot be printed, and so must be compared with one.
             start = str(ConfigError([start]))
             if line.startswith(start):

@@ -92,7 +92,7 @@ class MeasuredFiles:
     def read(self, read: Callable[[Path], Any], path: Path) -> Any:
         """Return what ``read`` returns; ValueError if it refuses, or while the file is being read.
 
-        It stands in for calling ``read`` under ``softafm.experiment.entries.files_read_by``.
+        It stands in for calling ``read`` under ``softafm.experiment.entries.replace_reader``.
         """
         if not path.is_file():
             return read(path)  # which says so
@@ -123,7 +123,7 @@ def try_out(reader: str, path: str) -> tuple[None, list]:
     ValueError
         If the reader refuses it, or it takes too long.
     """
-    from softafm.experiment.schema import measured_moduli
+    from softafm.experiment.schema import fit_measured_moduli
     from softafm.rheology.dma_table import read_moduli
 
     module, _, name = reader.partition(":")
@@ -132,7 +132,7 @@ def try_out(reader: str, path: str) -> tuple[None, list]:
     found = read(Path(path))
     if read is read_moduli:
         with suppress(ValueError):  # which the form says at another field
-            measured_moduli(found, poisson=0.5)
+            fit_measured_moduli(found, poisson=0.5)
     work = process_time() - started
     if work > _MOST_WORK:
         raise ValueError(

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
 
 from softafm.app.links import read_query, write_query
-from softafm.app.python_lines import python_lines
+from softafm.app.python_lines import write_python
 from softafm.modes import MODES
 
 if TYPE_CHECKING:
@@ -17,11 +17,11 @@ if TYPE_CHECKING:
 __all__ = [
     "draw_picture",
     "name_file",
-    "python_lines",
     "read_query",
     "write_command",
     "write_csv",
     "write_netcdf",
+    "write_python",
     "write_query",
     "write_toml",
 ]

@@ -87,7 +87,7 @@ def _show_take_away(
             f"To run it again: {take_away.name_file(document)} and this command": (
                 take_away.write_command(document)
             ),
-            "In Python": take_away.python_lines(document, folder),
+            "In Python": take_away.write_python(document, folder),
             "A link to this form": address(document),
         }
     title = make_pane(f"<h3>{_escape(entry.label)}: files</h3>")

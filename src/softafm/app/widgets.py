@@ -23,7 +23,7 @@ from softafm.app.outlook import Outlook, foresee
 from softafm.app.plan import Shown, list_sections, make_plan
 from softafm.app.readings import MeasuredFiles
 from softafm.app.uploads import keep
-from softafm.experiment.entries import files_read_by
+from softafm.experiment.entries import replace_reader
 from softafm.modes import MODES
 
 _LONGEST_TEXT = 20_000
@@ -180,7 +180,7 @@ class Form(pn.viewable.Viewer):
 
     def files_as_read(self) -> AbstractContextManager[None]:
         """Have files of the document not read again inside."""
-        return files_read_by(self._measured.read)
+        return replace_reader(self._measured.read)
 
     def answer(self, message: Any) -> None:
         """Take what the browser sent; what is malformed or late is left aside."""

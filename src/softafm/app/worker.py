@@ -19,7 +19,7 @@ from time import monotonic
 from typing import IO, Any, Literal
 
 from softafm.errors import AccuracyWarning, DivergedError
-from softafm.experiment.config import document_from, example_text, experiment_from
+from softafm.experiment.config import build_experiment, parse_document, read_example
 from softafm.files.guard import bound_memory
 
 Answer = tuple[Literal["ready", "progress", "warning", "result", "problem"], Any]
@@ -67,7 +67,7 @@ def main(largest: int) -> None:
     threading.Thread(target=_listen, args=(sys.stdin.buffer, requests), daemon=True).start()
     outlet = Outlet(answers)
     for name in _WARM_UP:
-        experiment_from(document_from(example_text(name), name), Path()).run()
+        build_experiment(parse_document(read_example(name), name), Path()).run()
     outlet.say("ready")
     while True:
         outlet.say(*refuse_large(*answer(*requests.get(), outlet), largest))
@@ -88,7 +88,7 @@ def answer(document: Mapping[str, Any], folder: str, outlet: Outlet) -> tuple[st
         try:
             last: tuple[str, Any] = (
                 "result",
-                experiment_from(document, Path(folder)).run(outlet.progress),
+                build_experiment(document, Path(folder)).run(outlet.progress),
             )
         except MemoryError:
             last = "problem", f"it needs more memory than a run may have here: {_SMALLER}"

@@ -4,7 +4,7 @@ from collections.abc import Iterator, Sequence
 from inspect import Parameter, isroutine, signature
 from typing import Any
 
-from softafm.checks.refusals import all_of, shown
+from softafm.checks.refusals import join_with_and, show
 
 SAMPLE = ("kind", "compliance", "poisson")
 """What a sample has, whatever its class."""
@@ -36,7 +36,7 @@ def refuse_incomplete(name: str, value: Any, needed: Sequence[str], wanted: str)
     if not missing and not isinstance(value, type):
         return
     in_part = 0 < len(missing) < len(needed) and not isinstance(value, type)
-    lacks = f"; it has no {all_of(missing)}" if in_part else ""
+    lacks = f"; it has no {join_with_and(missing)}" if in_part else ""
     raise ValueError(
         f"{name} = {_describe_given(value)}: must be {wanted}{lacks}{_describe_call(value)}"
     )
@@ -56,7 +56,7 @@ def refuse_non_dataset(name: str, value: Any) -> None:
     refuse_other(name, value, Dataset, "a result of softafm, an xarray.Dataset")
 
 
-def list_of(name: str, value: Any, kind: type, wanted: str) -> list[Any]:
+def check_list(name: str, value: Any, kind: type, wanted: str) -> list[Any]:
     """Return one object of a class, or a sequence of such, as a list; else raise ValueError."""
     if isinstance(value, kind):
         return [value]
@@ -75,7 +75,7 @@ def _is_callable(value: Any) -> bool:
 def _describe_given(value: Any) -> str:
     """Return a value as the user would recognise it: of a function or class its name."""
     if not _is_callable(value):
-        return " ".join(shown(value).split())
+        return " ".join(show(value).split())
     return f"<{'class' if isinstance(value, type) else 'function'} {value.__qualname__}>"
 
 

@@ -50,7 +50,7 @@ def _describe_problem(name: str, model: "type[BaseModel]", error: Any, valid: li
         what = model.model_fields[key].description
         return f"{path}: missing" + (f"; must be {what}" if what else "")
     reason = str(error.get("ctx", {}).get("error", error["msg"]))
-    return f"{path} = {shown(error['input'])}: {reason}"
+    return f"{path} = {show(error['input'])}: {reason}"
 
 
 def reword(table: str, written: Mapping[str, Any], error: Exception) -> str | None:
@@ -71,11 +71,11 @@ def reword(table: str, written: Mapping[str, Any], error: Exception) -> str | No
 
     def other(mention: re.Match[str]) -> str:
         key = _find_key(mention[1], written)
-        return f"{table}.{key} = {shown(written[key])}" if key in written else mention[0]
+        return f"{table}.{key} = {show(written[key])}" if key in written else mention[0]
 
     reason = re.sub(r"(?<![\w/])(\w+) = [-+.\de]+ [^\s,;)]+", other, reason)
     reason = re.sub(r"(?<=as many as )\w+", lambda mention: _find_key(mention[0], written), reason)
-    return f"{table}.{name} = {shown(value)}: {reason}"
+    return f"{table}.{name} = {show(value)}: {reason}"
 
 
 def _find_key(name: str, written: Mapping[str, Any]) -> str:
@@ -85,30 +85,30 @@ def _find_key(name: str, written: Mapping[str, Any]) -> str:
 
 def refuse_unknown(key: str, valid: Sequence[str], path: str) -> str:
     """Refuse a key that does not exist."""
-    return f"{path[:_LONGEST_SHOWN]}: unknown key; {nearest(key, valid)}"
+    return f"{path[:_LONGEST_SHOWN]}: unknown key; {suggest(key, valid)}"
 
 
-def nearest(given: object, valid: Sequence[str]) -> str:
+def suggest(given: object, valid: Sequence[str]) -> str:
     """Say which of the valid names was probably meant, or all of them."""
     text = given[:_LONGEST_SHOWN] if isinstance(given, str) else ""
     near = guess(text, valid)
     if near:
-        return f"did you mean {one_of(near)}? It must be {one_of(valid)}"
-    return f"must be {one_of(valid)}"
+        return f"did you mean {join_with_or(near)}? It must be {join_with_or(valid)}"
+    return f"must be {join_with_or(valid)}"
 
 
-def one_of(names: Sequence[str]) -> str:
+def join_with_or(names: Sequence[str]) -> str:
     """Return ``'a', 'b' or 'c'``."""
     quoted = [f"'{name}'" for name in names]
     return quoted[0] if len(quoted) == 1 else f"{', '.join(quoted[:-1])} or {quoted[-1]}"
 
 
-def all_of(names: Sequence[str]) -> str:
+def join_with_and(names: Sequence[str]) -> str:
     """Return ``a, b and c``."""
     return " and ".join([", ".join(names[:-1]), names[-1]] if len(names) > 1 else names)
 
 
-def shown(value: object) -> str:
+def show(value: object) -> str:
     """Return a value as the user would recognise it, cut to a legible length."""
     try:
         text = repr(value)

@@ -8,54 +8,54 @@ import numpy as np
 from softafm.checks.plausible import doubt
 
 
-def positive(name: str, value: float, unit: str) -> float:
+def check_positive(name: str, value: float, unit: str) -> float:
     """Return ``value`` as a float if it is finite and above zero, else raise ValueError."""
-    number = _number(name, value, unit)
+    number = _check_number(name, value, unit)
     if number <= 0:
         raise ValueError(f"{name} = {number:g} {unit}".rstrip() + ": must be greater than 0")
     doubt(name, number, unit)
     return number
 
 
-def finite(name: str, value: float, unit: str) -> float:
+def check_finite(name: str, value: float, unit: str) -> float:
     """Return ``value`` as a float if it is a finite real number, else raise ValueError."""
-    number = _number(name, value, unit)
+    number = _check_number(name, value, unit)
     doubt(name, number, unit)
     return number
 
 
-def _number(name: str, value: float, unit: str) -> float:
+def _check_number(name: str, value: float, unit: str) -> float:
     refuse_masked(name, value)
     try:
         if isinstance(value, bool | str | bytes):
             raise TypeError
         number = float(value)
     except (TypeError, ValueError):
-        raise ValueError(f"{name} = {value!r}: must be a number{_in(unit)}") from None
+        raise ValueError(f"{name} = {value!r}: must be a number{_write_unit(unit)}") from None
     if not isfinite(number):
         raise ValueError(f"{name} = {number} {unit}".rstrip() + ": must be a finite number")
     return number
 
 
-def _in(unit: str) -> str:
+def _write_unit(unit: str) -> str:
     return f" in {unit}" if unit else ""
 
 
-def between(name: str, value: float, unit: str, least: float, most: float) -> float:
+def check_between(name: str, value: float, unit: str, least: float, most: float) -> float:
     """Return ``value`` as a float if it lies from ``least`` to ``most``."""
-    number = _number(name, value, unit)
+    number = _check_number(name, value, unit)
     if not least <= number <= most:
         shown = f"{name} = {number:g} {unit}".rstrip()
         raise ValueError(f"{shown}: must be between {least:g} and {most:g} {unit}".rstrip())
     return number
 
 
-def numbers(name: str, values: Any, unit: str) -> tuple[float, ...]:
+def check_numbers(name: str, values: Any, unit: str) -> tuple[float, ...]:
     """Return the values as a tuple of finite floats, else raise ValueError naming the entry."""
     if isinstance(values, str | bytes | dict) or not hasattr(values, "__iter__"):
-        raise ValueError(f"{name} = {values!r}: must be a list of numbers{_in(unit)}")
+        raise ValueError(f"{name} = {values!r}: must be a list of numbers{_write_unit(unit)}")
     refuse_masked(name, values)
-    found = tuple(_number(f"{name}[{i}]", value, unit) for i, value in enumerate(values))
+    found = tuple(_check_number(f"{name}[{i}]", value, unit) for i, value in enumerate(values))
     if found:
         largest = max(range(len(found)), key=lambda i: abs(found[i]))
         doubt(f"{name}[{largest}]", found[largest], unit)
@@ -71,14 +71,14 @@ def refuse_masked(name: str, values: Any) -> None:
         raise ValueError(f"{entry} is masked: must be a number; leave masked entries out")
 
 
-def whole(name: str, value: int, least: int, most: int) -> int:
+def check_whole(name: str, value: int, least: int, most: int) -> int:
     """Return ``value`` if it is a whole number from ``least`` to ``most``."""
     if isinstance(value, bool) or not isinstance(value, int) or not least <= value <= most:
         raise ValueError(f"{name} = {value!r}: must be a whole number from {least} to {most}")
     return value
 
 
-def one_of(name: str, value: Any, choices: tuple[Any, ...]) -> Any:
+def check_choice(name: str, value: Any, choices: tuple[Any, ...]) -> Any:
     """Return ``value`` if it is one of the choices."""
     if not any(
         value is choice or (isinstance(value, str) and value == choice) for choice in choices
@@ -88,19 +88,19 @@ def one_of(name: str, value: Any, choices: tuple[Any, ...]) -> Any:
     return value
 
 
-def poisson_ratio(value: float) -> float:
+def check_poisson_ratio(value: float) -> float:
     """Return ``value`` if it lies in (-1, 0.5], the range of stable isotropic solids."""
-    number = finite("poisson", value, "")
+    number = check_finite("poisson", value, "")
     if not -1 < number <= 0.5:
         raise ValueError(f"poisson = {number:g}: must be above -1 and at most 0.5")
     return number
 
 
-def tolerance_of(value: float) -> float:
+def check_tolerance(value: float) -> float:
     """Return ``value`` if it is a tolerance that solvers can keep, 1e-5 to 0.1."""
-    return between("tolerance", value, "", 1e-5, 0.1)
+    return check_between("tolerance", value, "", 1e-5, 0.1)
 
 
-def tabor_of(name: str, value: float) -> float:
+def check_tabor(name: str, value: float) -> float:
     """Return ``value`` if it is a Tabor number that a contact can be given, 0.1 to 100."""
-    return between(name, value, "", 0.1, 100)
+    return check_between(name, value, "", 0.1, 100)

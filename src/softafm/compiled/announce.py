@@ -16,7 +16,7 @@ def silence() -> None:
 
 
 @contextmanager
-def announced_compilation(solver: str, patience: float = 3.0) -> Iterator[None]:
+def announce_compilation(solver: str, patience: float = 3.0) -> Iterator[None]:
     """Tell the user, on stderr, if what happens inside takes longer than ``patience`` seconds.
 
     Loading compiled code takes under a second; only a machine's first run waits for the compiler.

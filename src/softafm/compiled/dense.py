@@ -144,7 +144,7 @@ def multiply(matrix, x, out):
 
 
 @compile_for((_CONST2, _CONST2, _M))
-def row_products(left, right, out):
+def multiply_rows(left, right, out):
     """out = left rightᵀ: dot products of the rows of two matrices, in blocks of 2 by 4."""
     rows, n = left.shape
     columns = right.shape[0]

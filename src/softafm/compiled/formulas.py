@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from softafm.checks.validate import finite
+from softafm.checks.validate import check_finite
 
 
 class Shape(NamedTuple):
@@ -79,7 +79,7 @@ def bound_parameters(
     for key, value in values.items():
         if value is inspect.Parameter.empty:
             raise ValueError(f"{key}: missing; must have a value; {listed}")
-    return tuple((key, finite(key, value, "SI units")) for key, value in values.items())
+    return tuple((key, check_finite(key, value, "SI units")) for key, value in values.items())
 
 
 def find_first_line(error: Exception) -> str:

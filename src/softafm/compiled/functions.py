@@ -91,7 +91,7 @@ def compile_for(signature: Any, **options: Any) -> Callable[[Callable], Any]:
     return compile_now
 
 
-def inlined(function: Callable) -> Any:
+def inline(function: Callable) -> Any:
     """Decorate a function that is written into the compiled loops which call it.
 
     To hand over many arrays would take as long as its work.
@@ -206,12 +206,12 @@ def _find_type(function, context):
     return function.numba_type
 
 
-def pointer(signature: Any) -> Pointer:
+def pointer_to(signature: Any) -> Pointer:
     """Return the type of a first-class compiled function with this signature."""
     return Pointer(signature)
 
 
-def compiled(signature: Any) -> Callable[[Callable], CompiledFunction]:
+def compile_when_used(signature: Any) -> Callable[[Callable], CompiledFunction]:
     """Decorate a function, to be compiled for ``signature`` when it is first used.
 
     One of this package is kept on disk; a user's is compiled anew in every process.

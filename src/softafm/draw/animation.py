@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from softafm.checks.kinds import refuse_non_dataset
-from softafm.checks.validate import positive, whole
+from softafm.checks.validate import check_positive, check_whole
 from softafm.draw.scene_parts import (
     SAMPLE_COLOURS,
     TIP_COLOURS,
@@ -25,7 +25,7 @@ from softafm.draw.scene_parts import (
     write_titles,
 )
 from softafm.draw.scenes import choose_view, choose_window, interpolate_scenes, require_profiles
-from softafm.progress import Progress, reporting
+from softafm.progress import Progress, make_reporter
 from softafm.results.datasets import write_whole
 from softafm.units.quantities import choose_prefix
 
@@ -98,8 +98,8 @@ def animate(
         raise ValueError(f"{path}: suffix {suffix!r} is not known, must be .mp4, .gif or .html")
     refuse_non_dataset("result", result)
     require_profiles(result)
-    whole("frames", frames, 2, _MOST_FRAMES)
-    seconds = positive("seconds", seconds, "s")
+    check_whole("frames", frames, 2, _MOST_FRAMES)
+    seconds = check_positive("seconds", seconds, "s")
     if suffix == ".gif" and seconds < frames * _SHORTEST_GIF_FRAME:
         raise ValueError(
             f"frames = {frames}: a .gif shows at most {1 / _SHORTEST_GIF_FRAME:.0f} a second, "
@@ -112,7 +112,7 @@ def animate(
         )
     movie = _Movie(result, choose_window(result, start, stop), frames)
     write = {".mp4": _write_mp4, ".gif": _write_gif, ".html": _write_html}[suffix]
-    with reporting(progress) as report:
+    with make_reporter(progress) as report:
 
         def report_frame(index: int) -> None:
             if report is not None:

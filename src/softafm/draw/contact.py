@@ -7,7 +7,7 @@ import numpy as np
 from softafm.checks.kinds import refuse_other
 from softafm.contact import Contact
 from softafm.draw.law import draw_laws
-from softafm.draw.sample import SAMPLES, draw_moduli, draw_steps, times_of
+from softafm.draw.sample import SAMPLES, choose_times, draw_moduli, draw_steps
 from softafm.draw.tip import choose_extent, draw_profiles
 
 if TYPE_CHECKING:
@@ -54,7 +54,7 @@ def plot_contact(contact: Contact) -> "Figure":
     draw_profiles(profile, [tip], choose_extent([tip]), [tip.kind])
     _fill(profile)
     draw_laws(pressure, potential, [surface], [surface.kind])
-    time = np.geomspace(*times_of(sample), SAMPLES)
+    time = np.geomspace(*choose_times(sample), SAMPLES)
     draw_steps(steps, sample, time)
     draw_moduli(moduli, sample, time)
     return figure

@@ -23,7 +23,7 @@ _UNPREFIXED = {"1": "", "degree": " (°)"}
 """What is added to the title of an axis whose unit takes no prefix."""
 
 
-def axis_of(name: str) -> tuple[str, str | None]:
+def find_axis(name: str) -> tuple[str, str | None]:
     """Return the title of the axis of a variable of results, and its unit if it takes prefixes."""
     if name in AXES:
         return AXES[name]

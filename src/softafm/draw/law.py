@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from softafm.checks.kinds import list_of
+from softafm.checks.kinds import check_list
 from softafm.surfaces import SurfaceLaw
 
 if TYPE_CHECKING:
@@ -54,7 +54,7 @@ def plot_surface(
 
     from softafm.draw.style import choose_labels
 
-    drawn = list_of("laws", laws, SurfaceLaw, "a surface law such as softafm.LennardJones")
+    drawn = check_list("laws", laws, SurfaceLaw, "a surface law such as softafm.LennardJones")
     names = choose_labels("law", drawn, labels, (law.kind for law in drawn))
     figure = Figure(figsize=(9.6, 4.2), dpi=150, layout="constrained")
     axes = figure.subplots(1, 2, sharex=True)

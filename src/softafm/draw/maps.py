@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from matplotlib.figure import Figure
 
-from softafm.checks.kinds import list_of
+from softafm.checks.kinds import check_list
 from softafm.draw.style import choose_factor, choose_labels, find_prefix, write_label
 
 if TYPE_CHECKING:
@@ -64,7 +64,7 @@ def plot_map(
     """
     from xarray import Dataset
 
-    runs = list_of("maps", maps, Dataset, "a result of softafm, an xarray.Dataset")
+    runs = check_list("maps", maps, Dataset, "a result of softafm, an xarray.Dataset")
     titles = choose_labels("dataset", runs, labels, ("" for _ in runs))
     if names is None:
         names = _USUAL.get(str(runs[0].attrs.get("mode")))

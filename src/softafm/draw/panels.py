@@ -8,7 +8,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from softafm.draw.histories import axis_of, find_force, name_moved, split_strokes
+from softafm.draw.histories import find_axis, find_force, name_moved, split_strokes
 from softafm.draw.style import (
     APPROACH,
     HOLLOW,
@@ -22,7 +22,7 @@ from softafm.draw.style import (
     write_label,
 )
 from softafm.modes import Layout
-from softafm.results.content import unit_of
+from softafm.results.content import find_unit
 
 _SIZES = {1: (6.4, 4.4), 2: (9.6, 4.2)}
 _PANEL = (4.0, 4.2)
@@ -50,7 +50,7 @@ def draw_panels(runs: list[xr.Dataset], names: list[str], layout: Layout) -> Fig
 
 def _draw(ax: Axes, runs: list[xr.Dataset], abscissa: str, ordinate: str) -> None:
     """Draw two variables in the prefixes that suit the data, and label the axes."""
-    scales = _scale(runs, abscissa), _scale(runs, ordinate)
+    scales = _choose_scale(runs, abscissa), _choose_scale(runs, ordinate)
     ax.axhline(0, color="0.75", linewidth=0.8, zorder=0)
     if abscissa != "time":
         ax.axvline(0, color="0.75", linewidth=0.8, zorder=0)
@@ -78,8 +78,8 @@ def _draw(ax: Axes, runs: list[xr.Dataset], abscissa: str, ordinate: str) -> Non
             zorder=3,
             **HOLLOW,
         )
-    ax.set_xlabel(_label(abscissa, scales[0]), fontsize=11)
-    ax.set_ylabel(_label(ordinate, scales[1]), fontsize=11)
+    ax.set_xlabel(_write_label(abscissa, scales[0]), fontsize=11)
+    ax.set_ylabel(_write_label(ordinate, scales[1]), fontsize=11)
     tidy(ax)
 
 
@@ -102,17 +102,17 @@ def _crop(axes: np.ndarray, runs: list[xr.Dataset], layout: Layout) -> None:
     heights = [name for name in abscissae if name.endswith("_height")]
     for ax, (abscissa, _) in zip(axes, layout.panels, strict=True):
         low, high = find_force(runs, *(heights if abscissa in heights else [abscissa]))
-        scale = _scale(runs, abscissa)
+        scale = _choose_scale(runs, abscissa)
         ax.set_xlim(scale * low, scale * high)
         if abscissa == "time":
-            ax.set_title(_duration(runs), size=10)
+            ax.set_title(_measure_duration(runs), size=10)
 
 
 def _add_legend(
     figure: Figure, axes: np.ndarray, runs: list[xr.Dataset], names: list[str], layout: Layout
 ) -> None:
     """Tell runs and strokes apart, and say the scalars of the title."""
-    entries, stroke = make_run_entries(names), _stroke_entries(runs)
+    entries, stroke = make_run_entries(names), _make_stroke_entries(runs)
     if len(axes) == 1:
         axes[0].legend(handles=entries + stroke, frameon=False)
     elif not layout.title:
@@ -121,7 +121,7 @@ def _add_legend(
         figure.legend(handles=entries, loc="outside lower center", ncols=columns, frameon=False)
     else:
         axes[0].legend(handles=stroke, frameon=False)
-        lines = [_summary(run, layout) for run in runs]
+        lines = [_summarise(run, layout) for run in runs]
         if len(runs) == 1:
             axes[-1].set_title(lines[0], size=10)
             return
@@ -129,7 +129,7 @@ def _add_legend(
         figure.legend(handles=make_run_entries(lines), loc="outside lower center", frameon=False)
 
 
-def _stroke_entries(runs: list[xr.Dataset]) -> list[Line2D]:
+def _make_stroke_entries(runs: list[xr.Dataset]) -> list[Line2D]:
     """Legend entries of the strokes that there are by line style, and of elastic jumps."""
     if "jump_time" not in runs[0]:
         return []
@@ -141,25 +141,25 @@ def _stroke_entries(runs: list[xr.Dataset]) -> list[Line2D]:
     return entries
 
 
-def _summary(run: xr.Dataset, layout: Layout) -> str:
+def _summarise(run: xr.Dataset, layout: Layout) -> str:
     """Return the scalars of the title in words."""
     return ", ".join(
-        f"{words} {typeset(float(run[name]), str(unit_of(name)))}" for name, words in layout.title
+        f"{words} {typeset(float(run[name]), str(find_unit(name)))}" for name, words in layout.title
     )
 
 
-def _duration(runs: list[xr.Dataset]) -> str:
+def _measure_duration(runs: list[xr.Dataset]) -> str:
     duration = max(float(np.ptp(run["time"].values)) for run in runs)
     return f"Interaction only; the run lasts {typeset(duration, 's')}"
 
 
-def _label(variable: str, scale: float) -> str:
-    title, unit = axis_of(variable)
+def _write_label(variable: str, scale: float) -> str:
+    title, unit = find_axis(variable)
     return title if unit is None else write_label(title, unit, scale)
 
 
-def _scale(runs: list[xr.Dataset], variable: str) -> float:
+def _choose_scale(runs: list[xr.Dataset], variable: str) -> float:
     """Factor from SI to the prefix that suits the largest value of all runs."""
-    if axis_of(variable)[1] is None:
+    if find_axis(variable)[1] is None:
         return 1.0
     return choose_factor(*(run[variable].values for run in runs))

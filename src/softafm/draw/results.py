@@ -6,8 +6,8 @@ import xarray as xr
 from matplotlib.figure import Figure
 from numpy.typing import ArrayLike
 
-from softafm.checks.kinds import list_of
-from softafm.checks.refusals import one_of
+from softafm.checks.kinds import check_list
+from softafm.checks.refusals import join_with_or
 from softafm.draw.approach import draw_approach_curve
 from softafm.draw.panels import draw_panels
 from softafm.draw.reference import NAME as REFERENCE
@@ -52,7 +52,7 @@ def plot(
         If there is nothing to draw, if the modes differ or have no figure, if the number of
         labels is not that of datasets, or if the figure cannot show the reference.
     """
-    runs = list_of("datasets", datasets, xr.Dataset, "a result of softafm, an xarray.Dataset")
+    runs = check_list("datasets", datasets, xr.Dataset, "a result of softafm, an xarray.Dataset")
     names = choose_labels("dataset", runs, labels, (f"run {i + 1}" for i in range(len(runs))))
     if isinstance(reference, xr.Dataset):
         return _plot([*runs, reference], [*names, REFERENCE])
@@ -67,15 +67,17 @@ def _plot(runs: list[xr.Dataset], names: list[str]) -> Figure:
     modes = sorted({str(run.attrs.get("mode")) for run in runs})
     known = [*MODES, *MAPS]
     if len(modes) > 1 or modes[0] not in known:
-        raise ValueError(f"mode = {', '.join(modes)}: must be {one_of(known)}, the same for all")
+        raise ValueError(
+            f"mode = {', '.join(modes)}: must be {join_with_or(known)}, the same for all"
+        )
     if modes[0] in MAPS:
-        return _maps(runs, names)
+        return _draw_maps(runs, names)
     if "sweep_height" in runs[0].dims:
         return draw_approach_curve(runs, names)
     return draw_panels(runs, names, MODES[modes[0]].figure)
 
 
-def _maps(runs: list[xr.Dataset], names: list[str]) -> Figure:
+def _draw_maps(runs: list[xr.Dataset], names: list[str]) -> Figure:
     from softafm.draw.maps import plot_map
 
     return plot_map(runs, labels=names if len(runs) > 1 else None)

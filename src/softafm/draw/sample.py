@@ -9,7 +9,7 @@ from numpy.typing import ArrayLike
 from softafm.checks.kinds import refuse_other
 from softafm.rheology.dma import sort_moduli
 from softafm.rheology.interconversion import chain_to_prony
-from softafm.rheology.lists import window_of
+from softafm.rheology.lists import check_window
 from softafm.rheology.represented import Represented
 from softafm.rheology.solid import Solid
 
@@ -53,7 +53,7 @@ def plot_rheology(
 
     refuse_other("sample", sample, Solid, "a sample such as softafm.Elastic")
     measured = None if data is None else sort_moduli(*data)
-    shortest, longest = times_of(sample, measured) if window is None else window_of(window)
+    shortest, longest = choose_times(sample, measured) if window is None else check_window(window)
     time = np.geomspace(shortest, longest, SAMPLES)
     figure = Figure(figsize=(10.4, 4.2), dpi=150, layout=ConstrainedLayoutEngine(wspace=0.06))
     against_time, against_frequency = figure.subplots(1, 2)
@@ -62,7 +62,7 @@ def plot_rheology(
     return figure
 
 
-def times_of(sample: Solid, measured: tuple | None = None) -> tuple[float, float]:
+def choose_times(sample: Solid, measured: tuple | None = None) -> tuple[float, float]:
     """Return shortest and longest time, s, of the data, or else of the sample."""
     if measured:
         return 1 / (2 * pi * measured[0][-1]), 1 / (2 * pi * measured[0][0])
@@ -83,7 +83,7 @@ def draw_steps(ax: "Axes", sample: Solid, time: np.ndarray) -> None:
     against_compliance = ax.twinx()
     relaxation, creep = sample.relaxation_modulus(time), sample.creep_compliance(time)
     factor = choose_factor(relaxation)
-    solid, dashed = _lines()
+    solid, dashed = _choose_styles()
     ax.plot(time, factor * relaxation, **solid)
     ax.set_ylabel(
         write_label("Relaxation modulus", "Pa", factor), fontsize=11, color=solid["color"]
@@ -92,8 +92,8 @@ def draw_steps(ax: "Axes", sample: Solid, time: np.ndarray) -> None:
     against_compliance.plot(time, creep / factor, **dashed)
     title = f"Creep compliance (1/{find_prefix(factor)}Pa)"
     against_compliance.set_ylabel(title, fontsize=11, color=dashed["color"])
-    _logarithmic(ax, "Time", "s", right=False)
-    _logarithmic(against_compliance, "Time", "s", right=True)
+    _set_logarithmic(ax, "Time", "s", right=False)
+    _set_logarithmic(against_compliance, "Time", "s", right=True)
 
 
 def draw_moduli(ax: "Axes", sample: Solid, time: np.ndarray, measured: tuple | None = None) -> None:
@@ -104,25 +104,25 @@ def draw_moduli(ax: "Axes", sample: Solid, time: np.ndarray, measured: tuple | N
     moduli = sample.storage_modulus(frequency), sample.loss_modulus(frequency)
     factor = choose_factor(*moduli, *(measured[1:] if measured else ()))
     for index, name in enumerate(("storage modulus E′", "loss modulus E″")):
-        line = _lines()[index]
+        line = _choose_styles()[index]
         ax.plot(frequency, factor * moduli[index], label=name, **line)
         if measured:
             label = f"{name.split()[0]}, measured"
             points = factor * measured[1 + index]
             ax.plot(measured[0], points, color=line["color"], label=label, **HOLLOW)
     ax.set_ylabel(write_label("Modulus", "Pa", factor), fontsize=11)
-    _logarithmic(ax, "Frequency", "Hz")
+    _set_logarithmic(ax, "Frequency", "Hz")
     ax.legend(frameon=False)
 
 
-def _lines():
+def _choose_styles():
     """Styles of what is stored and what is lost: by colour and by dashes."""
     from softafm.draw.style import RETRACT, choose_line
 
     return choose_line(0), {**choose_line(1), "linestyle": RETRACT}
 
 
-def _logarithmic(ax: "Axes", title: str, unit: str, right: bool | None = None) -> None:
+def _set_logarithmic(ax: "Axes", title: str, unit: str, right: bool | None = None) -> None:
     """Set logarithmic axes, the abscissa labelled in prefixes; ``right`` if two share it."""
     from matplotlib.ticker import EngFormatter, LogLocator
 

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from softafm.checks.validate import finite
+from softafm.checks.validate import check_finite
 from softafm.units.quantities import write_quantity
 
 if TYPE_CHECKING:
@@ -82,7 +82,7 @@ def choose_window(
     time = result["time"].values
     first, last = float(time[0]), float(time[-1])
     given = {
-        name: finite(name, value, "s")
+        name: check_finite(name, value, "s")
         for name, value in (("start", start), ("stop", stop))
         if value is not None
     }

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from softafm.checks.kinds import refuse_non_dataset
-from softafm.checks.validate import whole
+from softafm.checks.validate import check_whole
 from softafm.draw.scene_parts import draw, make_writers, write_titles
 from softafm.draw.scenes import (
     Scenes,
@@ -65,7 +65,7 @@ def plot_profiles(
 
     refuse_non_dataset("result", result)
     require_profiles(result)
-    whole("frames", frames, 2, len(_LETTERS))
+    check_whole("frames", frames, 2, len(_LETTERS))
     instants = choose_instants(result, frames, *choose_window(result, start, stop, margin=0.05))
     columns = min(_COLUMNS, ceil(frames / 2))
     rows = ceil(frames / columns)

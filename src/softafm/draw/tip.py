@@ -5,8 +5,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from softafm.checks.kinds import list_of
-from softafm.checks.validate import positive
+from softafm.checks.kinds import check_list
+from softafm.checks.validate import check_positive
 from softafm.tips import Tip
 
 if TYPE_CHECKING:
@@ -53,9 +53,9 @@ def plot_tip(
 
     from softafm.draw.style import choose_labels
 
-    drawn = list_of("tips", tips, Tip, "a tip such as softafm.Paraboloid")
+    drawn = check_list("tips", tips, Tip, "a tip such as softafm.Paraboloid")
     names = choose_labels("tip", drawn, labels, (tip.kind for tip in drawn))
-    extent = choose_extent(drawn) if extent is None else positive("extent", extent, "m")
+    extent = choose_extent(drawn) if extent is None else check_positive("extent", extent, "m")
     figure = Figure(figsize=(6.4, 4.4), dpi=150, layout="constrained")
     draw_profiles(figure.add_subplot(), drawn, extent, names)
     return figure

@@ -8,14 +8,14 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from softafm.checks.paths import explain_no_file
-from softafm.checks.refusals import ConfigError, nearest, one_of, refuse_unknown, reword, shown
+from softafm.checks.refusals import ConfigError, join_with_or, refuse_unknown, reword, show, suggest
 from softafm.contact import Contact
 from softafm.experiment import schema
 from softafm.experiment.takers import refuse_result, refuse_unless
 from softafm.experiment.toml_text import parse
 from softafm.instrument.motion import is_steady
 from softafm.modes import MODES, Inputs, Mode, Settings
-from softafm.modes.check import finer_run
+from softafm.modes.check import plan_finer_run
 from softafm.modes.perform import simulate
 from softafm.modes.start import refuse_start_inside, refuse_unable, regularise_contact
 
@@ -133,30 +133,30 @@ def load_experiment(path: str | Path, overrides: Sequence[str] = ()) -> Experime
     document = load_document(path)
     for override in overrides:
         set_value(document, override)
-    return experiment_from(document, path.parent)
+    return build_experiment(document, path.parent)
 
 
-def example_names() -> list[str]:
+def list_examples() -> list[str]:
     """Return the names of the bundled experiment files."""
-    return _bundled("examples")
+    return _list_bundled("examples")
 
 
-def map_names() -> list[str]:
+def list_maps() -> list[str]:
     """Return the names of the bundled map files, which ``softafm scan`` takes."""
-    return _bundled("examples", "maps")
+    return _list_bundled("examples", "maps")
 
 
-def _bundled(*folders: str) -> list[str]:
+def _list_bundled(*folders: str) -> list[str]:
     folder = resources.files("softafm").joinpath(*folders)
     return sorted(f.name[:-5] for f in folder.iterdir() if f.name.endswith(".toml"))
 
 
-def example_text(name: str) -> str:
+def read_example(name: str) -> str:
     """Return a bundled experiment or map file; ConfigError if there is none of that name."""
-    known = [*example_names(), *map_names()]
+    known = [*list_examples(), *list_maps()]
     if name not in known:
-        raise ConfigError([f"example {shown(name)}: unknown; {nearest(name, known)}"])
-    folders = ("examples", "maps") if name in map_names() else ("examples",)
+        raise ConfigError([f"example {show(name)}: unknown; {suggest(name, known)}"])
+    folders = ("examples", "maps") if name in list_maps() else ("examples",)
     file = resources.files("softafm").joinpath(*folders, f"{name}.toml")
     return file.read_text(encoding="utf-8")
 
@@ -182,7 +182,7 @@ def load_document(path: str | Path) -> dict[str, Any]:
             [f"{name}: is not text in UTF-8 (byte {error.start}); save it as UTF-8"]
         ) from None
     try:
-        return document_from(text, name)
+        return parse_document(text, name)
     except ConfigError:
         _refuse_other_than_toml(path)
         raise
@@ -196,7 +196,7 @@ def _refuse_other_than_toml(path: Path) -> None:
         ) from None
 
 
-def document_from(text: str, name: str) -> dict[str, Any]:
+def parse_document(text: str, name: str) -> dict[str, Any]:
     """Return the tables of an experiment file's text; ``name`` is what a ConfigError calls it."""
     if not text.strip():
         raise ConfigError([f"{name}: is empty; 'softafm example' shows what it may hold"])
@@ -217,19 +217,17 @@ def set_value(document: dict[str, Any], override: str) -> None:
     key, equals, text = override.partition("=")
     names = [name.strip() for name in key.split(".")]
     if not equals or not all(names) or len(names) > _MOST_NAMES:
-        raise ConfigError(
-            [f"override {shown(override)}: must be key=value, such as sample.E0=3GPa"]
-        )
+        raise ConfigError([f"override {show(override)}: must be key=value, such as sample.E0=3GPa"])
     table = document
     for depth, name in enumerate(names[:-1], start=1):
         table = table.setdefault(name, {})
         if not isinstance(table, dict):
             parent = ".".join(names[:depth])
-            raise ConfigError([f"override {shown(override)}: {parent} is a value, not a table"])
-    table[names[-1]] = value_of(text.strip())
+            raise ConfigError([f"override {show(override)}: {parent} is a value, not a table"])
+    table[names[-1]] = parse_value(text.strip())
 
 
-def value_of(text: str) -> Any:
+def parse_value(text: str) -> Any:
     """Read a number, flag or list as in TOML; anything else is text that needs no quotes."""
     try:
         parsed = parse(f"value = {text}")
@@ -238,7 +236,7 @@ def value_of(text: str) -> Any:
     return parsed["value"] if len(parsed) == 1 else text
 
 
-def experiment_from(
+def build_experiment(
     document: Mapping[str, Any], folder: Path, build: Callable[..., Any] | None = None
 ) -> Experiment:
     """Build the experiment that a file's tables describe; other files are sought in ``folder``.
@@ -258,9 +256,9 @@ def experiment_from(
     known = ["mode", *_TABLES, "cantilever", *further, *_OPTIONAL_TABLES]
     problems += [refuse_unknown(key, known, key) for key in document if key not in known]
     if name is None:
-        problems.append(f"mode: missing; must be {one_of(list(MODES))}")
+        problems.append(f"mode: missing; must be {join_with_or(list(MODES))}")
     elif mode is None:
-        problems.append(f"mode = {shown(name)}: {nearest(name, list(MODES))}")
+        problems.append(f"mode = {show(name)}: {suggest(name, list(MODES))}")
 
     tables = [*_TABLES, *further, *(each for each in _OPTIONAL_TABLES if each in document)]
     if mode is None:
@@ -271,7 +269,7 @@ def experiment_from(
         levers = [each.name for each in MODES.values() if each.lever]
         problems.append(
             f"cantilever: of no use with mode = '{mode.name}'; leave it out, or use the mode "
-            f"{one_of(levers)}"
+            f"{join_with_or(levers)}"
         )
     built: dict[str, Any] = {}
     for table in tables:
@@ -317,12 +315,12 @@ def _refuse_run(contact: Contact, solver: Any, run: schema.Run, document: Mappin
     """Raise ConfigError if the run cannot be checked, or the contact not be regularised."""
     written = document.get("run", {})
     try:
-        finer_run(run.check, solver, run.tolerance)
+        plan_finer_run(run.check, solver, run.tolerance)
         regularise_contact(contact, run.regularise)
     except ValueError as error:
         key = "check" if str(error).startswith("check") else "regularise"
         reason = str(error).removeprefix("check = True: ")
-        raise ConfigError([f"run.{key} = {shown(written[key])}: {reason}"]) from None
+        raise ConfigError([f"run.{key} = {show(written[key])}: {reason}"]) from None
 
 
 def _refuse_flow(contact: Contact, mode: Mode, motion: Any, written: dict) -> None:
@@ -352,7 +350,7 @@ def _refuse_motion(contact: Contact, motion: Any, solver: Any, written: dict) ->
         refuse_start_inside(contact, motion)
     except ValueError as error:
         key = next((key for key in ("start", "mean_height", "file") if key in written), None)
-        place = "motion" if key is None else f"motion.{key} = {shown(written[key])}"
+        place = "motion" if key is None else f"motion.{key} = {show(written[key])}"
         raise ConfigError([f"{place}: {error}"]) from None
     try:
         refuse_unable(solver, motion)
@@ -369,19 +367,19 @@ def build_table(name: str, document: Mapping[str, Any], mode: Mode | None, folde
         raise ConfigError([f"{name}: missing; add a table [{name}]"])
     written = document[name]
     if not isinstance(written, dict):
-        raise ConfigError([f"{name} = {shown(written)}: must be a table, [{name}]"])
+        raise ConfigError([f"{name} = {show(written)}: must be a table, [{name}]"])
     if name == "run":
-        return schema.built(name, written, schema.Run, folder=folder)
+        return schema.build_kind(name, written, schema.Run, folder=folder)
     if name == "cantilever":
         table = schema.cantilever_of(mode) if mode is not None else None
-        return schema.built(name, written, table or schema.LeverTable, folder=folder)
+        return schema.build_kind(name, written, table or schema.LeverTable, folder=folder)
     if mode is not None and name in mode.tables:
-        return schema.built(name, written, schema.table_of(mode.tables[name]), folder=folder)
+        return schema.build_kind(name, written, schema.table_of(mode.tables[name]), folder=folder)
     if name == "motion" and mode is not None:
         shapes = schema.motions_of(mode)
         default = next(iter(shapes))
-        return schema.chosen(name, written, "shape", shapes, default=default, folder=folder)
-    thing = schema.chosen(name, written, *schema.CHOICES[name], folder=folder)
+        return schema.build_choice(name, written, "shape", shapes, default=default, folder=folder)
+    thing = schema.build_choice(name, written, *schema.CHOICES[name], folder=folder)
     try:
         # Both are found when first asked for, and may not exist.
         if name == "sample":
@@ -391,5 +389,5 @@ def build_table(name: str, document: Mapping[str, Any], mode: Mode | None, folde
     except ValueError as error:
         key = "window" if name == "sample" else "law"
         reason = str(error).removeprefix(f"surface law '{thing.kind}': ")
-        raise ConfigError([f"{name}.{key} = {shown(written.get(key))}: {reason}"]) from error
+        raise ConfigError([f"{name}.{key} = {show(written.get(key))}: {reason}"]) from error
     return thing

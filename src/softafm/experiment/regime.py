@@ -7,14 +7,14 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from softafm.draw.summary import describe_misfit, describe_regularisation, describe_slowing
-from softafm.experiment.run import Source, experiment_of
+from softafm.experiment.run import Source, make_experiment
 from softafm.experiment.scales import Regime
-from softafm.instrument.motions import lowest_height
+from softafm.instrument.motions import find_lowest_height
 from softafm.modes import MODES, Foreseen, Row
 from softafm.modes.start import regularise_contact
 from softafm.results.datasets import compute_edge_slowing
 from softafm.rheology.represented import Represented
-from softafm.solvers.energy import Energy, cohesive_lengths_crossed
+from softafm.solvers.energy import Energy, count_cohesive_lengths
 from softafm.tips import Paraboloid
 from softafm.units.quantities import write_quantity
 
@@ -52,26 +52,26 @@ def regime(experiment: Source, overrides: Sequence[str] = ()) -> Regime:
     ConfigError
         As ``softafm.run``.
     """
-    known = experiment_of(experiment, overrides)
-    contact, case = _case(known)
-    lowest = lowest_height(case.motion)
+    known = make_experiment(experiment, overrides)
+    contact, case = _make_case(known)
+    lowest = find_lowest_height(case.motion)
     return Regime(
         mode=known.mode,
         contact=contact,
         lowest_height=lowest,
         contact_radius=contact.contact_radius(lowest),
         duration=float(case.motion.breaks[-1] - case.motion.breaks[0]),
-        expected_seconds=expected_seconds(known),
-        rows=tuple(rows(known)),
+        expected_seconds=estimate_seconds(known),
+        rows=tuple(list_rows(known)),
     )
 
 
-def rows(experiment: "Experiment") -> list[Row]:
+def list_rows(experiment: "Experiment") -> list[Row]:
     """Return the rows of that table."""
-    contact, case = _case(experiment)
+    contact, case = _make_case(experiment)
     motion = case.motion
     duration = float(motion.breaks[-1] - motion.breaks[0])
-    lowest = lowest_height(motion)
+    lowest = find_lowest_height(motion)
     radius = contact.contact_radius(lowest)
 
     found: list[Row] = []
@@ -82,7 +82,7 @@ def rows(experiment: "Experiment") -> list[Row]:
     where = "above the undeformed surface" + (", lever unbent" if bends else "")
     found.append(Row("lowest tip height", write_quantity(lowest, "m"), case.depth or where))
     theory = "JKR" if contact.adhesive else "without adhesion"
-    expected = f"{theory}, {_slow(contact)}, at the lowest height"
+    expected = f"{theory}, {_name_slow_modulus(contact)}, at the lowest height"
     words = expected if radius else "none is expected to last"
     found.append(Row("contact radius", write_quantity(radius, "m"), words))
     if bends:
@@ -90,39 +90,39 @@ def rows(experiment: "Experiment") -> list[Row]:
     found += case.rows
     found.append(Row(f"time of the {case.noun}", write_quantity(duration, "s"), ""))
     _add_sample(found, contact, duration, case.noun)
-    cost = _cost_in_words(expected_seconds(experiment))
+    cost = _describe_cost(estimate_seconds(experiment))
     found.append(Row("expected cost", cost, _reason_of_cost(experiment, contact, case)))
     return found
 
 
-def expected_seconds(experiment: "Experiment") -> float:
+def estimate_seconds(experiment: "Experiment") -> float:
     """Return the order of magnitude of a run, s on one core."""
-    contact, case = _case(experiment)
+    contact, case = _make_case(experiment)
     runs = case.runs * (_CHECKED if experiment.check else 1)
-    solver = _solver(experiment)
+    solver = _choose_solver(experiment)
     if solver.adaptive:
         runs *= _TENTH ** log10(_USUAL / experiment.tolerance)
     return runs * solver.expected_seconds(contact, case.motion)
 
 
-def _case(experiment: "Experiment") -> tuple["Contact", Foreseen]:
+def _make_case(experiment: "Experiment") -> tuple["Contact", Foreseen]:
     """Return what comes in touch, and how."""
     contact = regularise_contact(experiment.contact, experiment.regularise)
     mode = MODES[experiment.mode]
     return contact, mode.expect(experiment.inputs._replace(contact=contact))
 
 
-def _solver(experiment: "Experiment") -> Any:
+def _choose_solver(experiment: "Experiment") -> Any:
     return Energy() if experiment.solver is None else experiment.solver
 
 
 def _reason_of_cost(experiment: "Experiment", contact: "Contact", case: Foreseen) -> str:
     """Return what a run costs its time for."""
-    solver = _solver(experiment)
+    solver = _choose_solver(experiment)
     if not solver.adaptive:
         reason = f"{solver.steps} steps of {solver.nodes} nodes"
     elif contact.adhesive:
-        crossed = cohesive_lengths_crossed(contact, case.motion)
+        crossed = count_cohesive_lengths(contact, case.motion)
         reason = f"the edge crosses at most {crossed:.2g} cohesive lengths"
     else:
         reason = "no tension zone to resolve"
@@ -147,7 +147,7 @@ def _add_adhesion(found: list[Row], contact: "Contact") -> None:
         return
     for when, tabor in (("fast", contact.tabor_instantaneous), ("slow", contact.tabor_relaxed)):
         value = f"{tabor:.3g}" if isfinite(tabor) else _FLOWS
-        found.append(Row(f"Tabor number, {when}", value, _tabor_in_words(tabor)))
+        found.append(Row(f"Tabor number, {when}", value, _describe_tabor(tabor)))
     for when, length in (
         ("fast", contact.cohesive_length_instantaneous),
         ("slow", contact.cohesive_length),
@@ -204,7 +204,7 @@ def _add_sample(found: list[Row], contact: "Contact", duration: float, whole: st
         found.append(Row("creep times", _elements(times.size), words))
     else:
         for time in map(float, times):
-            words = _creep_in_words(time / duration, whole)
+            words = _describe_creep(time / duration, whole)
             found.append(Row("creep time", write_quantity(time, "s"), words))
     if creep.fluidity:
         viscosity = 1 / creep.fluidity
@@ -218,7 +218,7 @@ def _elements(count: int) -> str:
     return "1 element" if count == 1 else f"{count} elements"
 
 
-def _slow(contact: "Contact") -> str:
+def _name_slow_modulus(contact: "Contact") -> str:
     """Tell which modulus stands for the long run."""
     if contact.body.compliance.fluidity:
         return f"at {write_quantity(contact.softened_modulus, 'Pa')} as flow sets in"
@@ -237,11 +237,11 @@ def _add_lever(found: list[Row], contact: "Contact", lever: float, radius: float
     if radius:
         stiffness = 2 * radius * contact.softened_modulus * contact.body.hardening(radius)
         share = stiffness / (stiffness + lever)
-        words = f"2·E·a, {_slow(contact)}; lever bends by {share:.0%} of the way"
+        words = f"2·E·a, {_name_slow_modulus(contact)}; lever bends by {share:.0%} of the way"
         found.append(Row("contact stiffness", write_quantity(stiffness, "N/m"), words))
 
 
-def _tabor_in_words(tabor: float) -> str:
+def _describe_tabor(tabor: float) -> str:
     if tabor < 0.1:
         return "stiff (DMT): adhesion acts around a Hertz contact"
     if tabor <= 5:
@@ -249,7 +249,7 @@ def _tabor_in_words(tabor: float) -> str:
     return "soft (JKR): adhesion acts at the edge"
 
 
-def _creep_in_words(share: float, whole: str) -> str:
+def _describe_creep(share: float, whole: str) -> str:
     if share < 1e-3:
         return f"{share:.2g} of the {whole}: nearly relaxed"
     if share > 1e2:
@@ -257,7 +257,7 @@ def _creep_in_words(share: float, whole: str) -> str:
     return f"{share:.2g} of the {whole}: viscoelastic"
 
 
-def _cost_in_words(seconds: float) -> str:
+def _describe_cost(seconds: float) -> str:
     if seconds < 1:
         return "under 1 s"
     if seconds < 60:

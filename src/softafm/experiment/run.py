@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from softafm.checks.kinds import refuse_other
-from softafm.experiment.config import Experiment, experiment_from, load_experiment, set_value
+from softafm.experiment.config import Experiment, build_experiment, load_experiment, set_value
 from softafm.progress import Progress
 
 if TYPE_CHECKING:
@@ -45,10 +45,10 @@ def run(
         A ``ValueError``, before anything is computed, if the file cannot be read or describes no
         valid experiment; each line names a field, the value given and what would be valid.
     """
-    return experiment_of(experiment, overrides).run(progress)
+    return make_experiment(experiment, overrides).run(progress)
 
 
-def experiment_of(source: Source, overrides: Sequence[str] = ()) -> Experiment:
+def make_experiment(source: Source, overrides: Sequence[str] = ()) -> Experiment:
     """Return the experiment that a file or its tables describe; the errors are those of ``run``."""
     if isinstance(source, Experiment):
         if overrides:
@@ -66,4 +66,4 @@ def experiment_of(source: Source, overrides: Sequence[str] = ()) -> Experiment:
         refuse_other("key of an experiment", key, str, "the name of a table, such as 'tip'")
     for override in overrides:
         set_value(document, override)
-    return experiment_from(document, Path())
+    return build_experiment(document, Path())

@@ -25,12 +25,12 @@ from pydantic import (
 
 from softafm.checks.refusals import (
     ConfigError,
-    all_of,
     describe_problems,
-    nearest,
-    one_of,
+    join_with_and,
+    join_with_or,
     reword,
-    shown,
+    show,
+    suggest,
 )
 from softafm.checks.suggestions import explain_limit
 from softafm.experiment.entries import (
@@ -66,10 +66,10 @@ from softafm.experiment.entries import (
     Viscosity,
     Voltage,
     Whole,
-    choice_of,
-    file_of,
+    make_check,
+    make_choice,
+    make_file_type,
     quantity_of,
-    refused_as,
 )
 from softafm.files.measured import read_base_trajectory, read_trajectory
 from softafm.instrument.cantilever import Cantilever
@@ -137,7 +137,7 @@ class Table(BaseModel):
         values = {k: getattr(self, k) for a in present for k in a if getattr(self, k) is not None}
         if len(present) == 1 and len(values) == len(present[0]):
             return values
-        choices = ", or ".join(map(all_of, alternatives))
+        choices = ", or ".join(map(join_with_and, alternatives))
         raise ValueError(f"give {choices}; found {', '.join(values) or 'none of them'}")
 
 
@@ -215,7 +215,7 @@ class TrajectoryMotion(Table):
         Whether the path is a record with noise, which is to be smoothed between its corners.
     """
 
-    file: Annotated[Any, *file_of(read_trajectory)]
+    file: Annotated[Any, *make_file_type(read_trajectory)]
     smooth: Flag = False
     measured: Flag = False
     noise: Annotated[Length, Positive] | None = None
@@ -239,7 +239,7 @@ class TrajectoryMotion(Table):
 class BaseTrajectoryMotion(TrajectoryMotion):
     """``[motion] shape = "trajectory"`` of the base of a lever."""
 
-    file: Annotated[Any, *file_of(read_base_trajectory)]
+    file: Annotated[Any, *make_file_type(read_base_trajectory)]
 
 
 class SweepMotion(Table):
@@ -317,7 +317,7 @@ _PLAIN: dict[Any, Any] = {
     float: Number,
     tuple[float, ...]: Numbers,
     bool: Flag,
-    Stepper: choice_of(STEPPERS),
+    Stepper: make_choice(STEPPERS),
 }
 """How all other parameters are written, by the type that the dataclass declares."""
 
@@ -331,16 +331,18 @@ class Solver(Table):
         return self.solver(**{key: getattr(self, key) for key in self.model_fields_set})
 
 
-def _solver(solver: type) -> type[Solver]:
+def _make_solver_table(solver: type) -> type[Solver]:
     """Return the table of a solver, a dataclass whose parameters all have defaults."""
     types = get_type_hints(solver)
-    keys: dict[str, Any] = {f.name: (_written(f.name, types[f.name]), None) for f in fields(solver)}
+    keys: dict[str, Any] = {
+        f.name: (_find_key_type(f.name, types[f.name]), None) for f in fields(solver)
+    }
     table = create_model(solver.__name__, __base__=Solver, **keys)
     table.solver = solver
     return table
 
 
-def _written(name: str, declared: Any) -> Any:
+def _find_key_type(name: str, declared: Any) -> Any:
     """Return the type of a key that is a field of a dataclass; ValueError if there is none."""
     if name in _WITH_UNIT:
         return _WITH_UNIT[name]
@@ -350,7 +352,7 @@ def _written(name: str, declared: Any) -> Any:
         if isinstance(unit, Kind):
             return quantity_of(unit, listed=declared.__origin__ == tuple[float, ...])
     if get_origin(declared) is Literal:
-        return choice_of({choice: choice for choice in get_args(declared)})
+        return make_choice({choice: choice for choice in get_args(declared)})
     if declared in _PLAIN:
         return _PLAIN[declared]
     raise ValueError(
@@ -367,40 +369,42 @@ class Thing(Table):
     def build(self) -> Any:
         given = {key: getattr(self, key) for key in self.model_fields_set}
         for constructor in self.constructors:
-            needed, known = _keys_of(constructor)
+            needed, known = _list_keys(constructor)
             if set(needed) <= given.keys() <= set(known):
                 return constructor(**{known[key]: value for key, value in given.items()})
-        common, ways = _needed_by_all(self.constructors), _ways(self.constructors)
+        common, ways = _find_common_keys(self.constructors), _list_ways(self.constructors)
         found = ", ".join(key for key in type(self).model_fields if key in given.keys() - common)
-        raise ValueError(f"give {', or '.join(map(all_of, ways))}; found {found or 'none of them'}")
+        raise ValueError(
+            f"give {', or '.join(map(join_with_and, ways))}; found {found or 'none of them'}"
+        )
 
 
-def _thing(*constructors: Callable, file: Callable[[Path], Any] | None = None) -> type[Thing]:
+def _make_table(*constructors: Callable, file: Callable[[Path], Any] | None = None) -> type[Thing]:
     """Return the table of what a class, or another of its constructors, makes.
 
     ``file`` reads what the constructor takes as such.
     """
-    written = KEYS if file is None else {**KEYS, "file": Annotated[Any, *file_of(file)]}
-    needed = _needed_by_all(constructors)
-    names = dict.fromkeys(key for make in constructors for key in _keys_of(make)[1])
+    written = KEYS if file is None else {**KEYS, "file": Annotated[Any, *make_file_type(file)]}
+    needed = _find_common_keys(constructors)
+    names = dict.fromkeys(key for make in constructors for key in _list_keys(make)[1])
     keys: dict[str, Any] = {key: (written[key], ... if key in needed else None) for key in names}
     table = create_model(constructors[0].__name__, __base__=Thing, **keys)
     table.constructors = constructors
-    table.alternatives = (_ways(constructors),) if len(constructors) > 1 else ()
+    table.alternatives = (_list_ways(constructors),) if len(constructors) > 1 else ()
     return table
 
 
-def _ways(constructors: tuple[Callable, ...]) -> tuple[tuple[str, ...], ...]:
+def _list_ways(constructors: tuple[Callable, ...]) -> tuple[tuple[str, ...], ...]:
     """Return for each constructor the keys that it needs and not all do."""
-    common = _needed_by_all(constructors)
-    return tuple(tuple(k for k in _keys_of(c)[0] if k not in common) for c in constructors)
+    common = _find_common_keys(constructors)
+    return tuple(tuple(k for k in _list_keys(c)[0] if k not in common) for c in constructors)
 
 
-def _needed_by_all(constructors: tuple[Callable, ...]) -> set[str]:
-    return set.intersection(*(set(_keys_of(make)[0]) for make in constructors))
+def _find_common_keys(constructors: tuple[Callable, ...]) -> set[str]:
+    return set.intersection(*(set(_list_keys(make)[0]) for make in constructors))
 
 
-def _keys_of(constructor: Callable) -> tuple[list[str], dict[str, str]]:
+def _list_keys(constructor: Callable) -> tuple[list[str], dict[str, str]]:
     """Return the keys that a constructor needs, and of each it knows the name of its parameter."""
     parameters = signature(constructor).parameters
     key_of = {name: _KEY_OF.get(name, name) for name in parameters}
@@ -416,7 +420,7 @@ KEYS: dict[str, Any] = {
     ),
     **dict.fromkeys(
         ("decay", "core", "debye_length", "cutoff"),
-        Annotated[Length, refused_as(lambda number: check_length("", number))],
+        Annotated[Length, make_check(lambda number: check_length("", number))],
     ),
     "height": Length,
     **dict.fromkeys(("E", "E0", "E1", "G", "G0"), Annotated[Modulus, Positive]),
@@ -446,17 +450,17 @@ _KEY_OF = {"W": "work_of_adhesion"}
 """Keys that are not called as the parameter is."""
 
 
-def measured_tip(file: Tip) -> Tip:
+def use_measured_tip(file: Tip) -> Tip:
     """Return the tip that ``read_tip_profile`` read."""
     return file
 
 
-def tabulated(file: SurfaceLaw) -> SurfaceLaw:
+def use_tabulated_law(file: SurfaceLaw) -> SurfaceLaw:
     """Return the surface law that ``read_law`` read."""
     return file
 
 
-def measured_moduli(
+def fit_measured_moduli(
     file: DynamicModuli, poisson: float, per_decade: float = 2.0
 ) -> GeneralizedMaxwell:
     """Fit moduli that ``read_moduli`` read, as ``GeneralizedMaxwell.from_dma``."""
@@ -478,7 +482,7 @@ class SumSurface(Table):
         single = {law: table for law, table in laws.items() if table is not cls}
         folder = info.context["folder"] if info.context else Path()
         return tuple(
-            chosen(f"parts[{index}]", part, chooser, single, folder=folder)
+            build_choice(f"parts[{index}]", part, chooser, single, folder=folder)
             for index, part in enumerate(parts)
         )
 
@@ -490,44 +494,49 @@ CHOICES: dict[str, tuple[str, dict[str, type[Table]]]] = {
     "tip": (
         "shape",
         {
-            **{tip.kind: _thing(tip) for tip in (Paraboloid, Sphere, Cone, Hyperboloid, FlatPunch)},
-            PowerLawTip.kind: _thing(PowerLawTip),
-            "measured": _thing(measured_tip, file=read_tip_profile),
+            **{
+                tip.kind: _make_table(tip)
+                for tip in (Paraboloid, Sphere, Cone, Hyperboloid, FlatPunch)
+            },
+            PowerLawTip.kind: _make_table(PowerLawTip),
+            "measured": _make_table(use_measured_tip, file=read_tip_profile),
         },
     ),
     "sample": (
         "model",
         {
             "standard-linear-solid": StandardLinearSolidSample,
-            "elastic": _thing(Elastic),
-            "kelvin-voigt": _thing(KelvinVoigt, KelvinVoigt.from_viscosity, KelvinVoigt.from_shear),
-            "maxwell": _thing(Maxwell, Maxwell.from_viscosity, Maxwell.from_shear),
-            "generalized-kelvin-voigt": _thing(GeneralizedKelvinVoigt),
-            "generalized-maxwell": _thing(
+            "elastic": _make_table(Elastic),
+            "kelvin-voigt": _make_table(
+                KelvinVoigt, KelvinVoigt.from_viscosity, KelvinVoigt.from_shear
+            ),
+            "maxwell": _make_table(Maxwell, Maxwell.from_viscosity, Maxwell.from_shear),
+            "generalized-kelvin-voigt": _make_table(GeneralizedKelvinVoigt),
+            "generalized-maxwell": _make_table(
                 GeneralizedMaxwell, GeneralizedMaxwell.from_shear, GeneralizedMaxwell.from_ratios
             ),
-            "power-law": _thing(PowerLaw),
-            "fractional-standard-linear-solid": _thing(FractionalStandardLinearSolid),
-            "measured-moduli": _thing(measured_moduli, file=read_moduli),
-            **{name: _thing(sample) for name, sample in NAMED.items()},
+            "power-law": _make_table(PowerLaw),
+            "fractional-standard-linear-solid": _make_table(FractionalStandardLinearSolid),
+            "measured-moduli": _make_table(fit_measured_moduli, file=read_moduli),
+            **{name: _make_table(sample) for name, sample in NAMED.items()},
         },
     ),
     "surface": (
         "law",
         {
-            "lennard-jones": _thing(LennardJones, LennardJones.from_work_of_adhesion),
-            "van-der-waals": _thing(VanDerWaals, VanDerWaals.from_work_of_adhesion),
-            "dmt": _thing(DMT, DMT.from_work_of_adhesion),
-            **{law.kind: _thing(law) for law in (Exponential, Morse, Dugdale)},
-            "dlvo": _thing(DLVO, DLVO.from_concentration),
-            **{law.kind: _thing(law) for law in (Repulsion, VanDerWaalsAttraction)},
-            "tabulated": _thing(tabulated, file=read_law),
+            "lennard-jones": _make_table(LennardJones, LennardJones.from_work_of_adhesion),
+            "van-der-waals": _make_table(VanDerWaals, VanDerWaals.from_work_of_adhesion),
+            "dmt": _make_table(DMT, DMT.from_work_of_adhesion),
+            **{law.kind: _make_table(law) for law in (Exponential, Morse, Dugdale)},
+            "dlvo": _make_table(DLVO, DLVO.from_concentration),
+            **{law.kind: _make_table(law) for law in (Repulsion, VanDerWaalsAttraction)},
+            "tabulated": _make_table(use_tabulated_law, file=read_law),
             "sum": SumSurface,
         },
     ),
     "solver": (
         "name",
-        {solver.kind: _solver(solver) for solver in (Energy, Attard, EnhancedAttard)},
+        {solver.kind: _make_solver_table(solver) for solver in (Energy, Attard, EnhancedAttard)},
     ),
 }
 """For each table the key that chooses, and what it can choose."""
@@ -571,7 +580,7 @@ def table_of(made: type) -> type[FieldsTable]:
     """Return the table of a dataclass, with its units, defaults and docstring."""
     types = get_type_hints(made, include_extras=True)
     keys: dict[str, Any] = {
-        f.name: (_written(f.name, types[f.name]), ... if f.default is MISSING else f.default)
+        f.name: (_find_key_type(f.name, types[f.name]), ... if f.default is MISSING else f.default)
         for f in fields(made)
     }
     table = create_model(made.__name__, __base__=FieldsTable, **keys)
@@ -584,7 +593,7 @@ def cantilever_of(mode: Mode) -> type[Table] | None:
     return {"": None, "stiffness": LeverTable, "resonator": ResonatorTable}[mode.lever]
 
 
-def chosen(
+def build_choice(
     name: str,
     written: Any,
     chooser: str,
@@ -598,19 +607,19 @@ def chosen(
     ``name`` is what the table is called in a ConfigError; files are sought in ``folder``.
     """
     if not isinstance(written, dict):
-        raise ConfigError([f"{name} = {shown(written)}: must be a table with a {chooser}"])
+        raise ConfigError([f"{name} = {show(written)}: must be a table with a {chooser}"])
     choice = written.get(chooser, default)
     if choice is None:
-        raise ConfigError([f"{name}.{chooser}: missing; must be {one_of(list(choices))}"])
+        raise ConfigError([f"{name}.{chooser}: missing; must be {join_with_or(list(choices))}"])
     if not isinstance(choice, str) or choice not in choices:
-        reason = nearest(choice, list(choices))
+        reason = suggest(choice, list(choices))
         if chooser == "law" and isinstance(choice, str):
             reason = explain_limit(choice) + reason
-        raise ConfigError([f"{name}.{chooser} = {shown(choice)}: {reason}"])
-    return built(name, written, choices[choice], chooser=chooser, folder=folder)
+        raise ConfigError([f"{name}.{chooser} = {show(choice)}: {reason}"])
+    return build_kind(name, written, choices[choice], chooser=chooser, folder=folder)
 
 
-def built(
+def build_kind(
     name: str, written: Mapping, table: type[Table], *, chooser: str | None = None, folder: Path
 ) -> Any:
     """Build what a table of a known kind describes; ConfigError if it cannot be."""

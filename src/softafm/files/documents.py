@@ -2,7 +2,7 @@
 
 from pathlib import Path
 
-from softafm.checks.refusals import nearest, shown
+from softafm.checks.refusals import show, suggest
 
 _INSTALLED = Path(__file__).parents[1] / "docs"
 _IN_THE_REPOSITORY = Path(__file__).parents[3] / "docs"
@@ -29,5 +29,5 @@ def page_text(name: str) -> str:
     """
     known = list(page_titles())
     if name not in known:
-        raise ValueError(f"page {shown(name)}: unknown; {nearest(name, known)}")
+        raise ValueError(f"page {show(name)}: unknown; {suggest(name, known)}")
     return (folder() / f"{name}.md").read_text(encoding="utf-8")

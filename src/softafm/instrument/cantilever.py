@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 from typing import ClassVar
 
-from softafm.checks.validate import positive
+from softafm.checks.validate import check_positive
 
 
 @dataclass(frozen=True)
@@ -36,4 +36,4 @@ class Cantilever:
         for name, unit in units.items():
             value = getattr(self, name)
             if value is not None or name == "stiffness":
-                object.__setattr__(self, name, positive(name, value, unit))
+                object.__setattr__(self, name, check_positive(name, value, unit))

@@ -2,20 +2,20 @@
 
 from math import inf
 
-from softafm.compiled.functions import ACCEPTANCE, RESPONSE, compiled
+from softafm.compiled.functions import ACCEPTANCE, RESPONSE, compile_when_used
 
 
-@compiled(RESPONSE)
+@compile_when_used(RESPONSE)
 def hold(time, step, deflection, force, parameters, state):
     return deflection, inf
 
 
-@compiled(RESPONSE)
+@compile_when_used(RESPONSE)
 def bend(time, step, deflection, force, parameters, state):
     stiffness, drag = parameters[0], parameters[1] / step
     return deflection * drag / (1.0 + drag), stiffness * (1.0 + drag)
 
 
-@compiled(ACCEPTANCE)
+@compile_when_used(ACCEPTANCE)
 def remember_nothing(time, step, before, force, parameters, state):
     return

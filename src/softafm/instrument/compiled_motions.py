@@ -4,27 +4,27 @@ from math import cos, pi
 
 import numpy as np
 
-from softafm.compiled.functions import HEIGHT, compiled
+from softafm.compiled.functions import HEIGHT, compile_when_used
 
 
-@compiled(HEIGHT)
+@compile_when_used(HEIGHT)
 def triangle(time: float, parameters: np.ndarray) -> float:
     turn, speed, middle, half_dwell = parameters[0], parameters[1], parameters[2], parameters[3]
     return turn + speed * max(abs(time - middle) - half_dwell, 0.0)
 
 
-@compiled(HEIGHT)
+@compile_when_used(HEIGHT)
 def still(time: float, parameters: np.ndarray) -> float:
     return parameters[0]
 
 
-@compiled(HEIGHT)
+@compile_when_used(HEIGHT)
 def sine(time: float, parameters: np.ndarray) -> float:
     mean, amplitude, frequency = parameters[0], parameters[1], parameters[2]
     return mean + amplitude * cos(2 * pi * frequency * time)
 
 
-@compiled(HEIGHT)
+@compile_when_used(HEIGHT)
 def sampled(time: float, parameters: np.ndarray) -> float:
     """Cubics between n times; parameters hold the times, then n − 1 coefficients of each power of
     the time since the last of them, the highest power first."""

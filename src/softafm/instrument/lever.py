@@ -16,7 +16,7 @@ from typing import Any, Protocol
 import numpy as np
 
 from softafm.checks.kinds import refuse_incomplete
-from softafm.checks.validate import positive
+from softafm.checks.validate import check_positive
 
 
 class Lever(Protocol):
@@ -31,8 +31,8 @@ class Lever(Protocol):
     def compiled_response(self) -> tuple[Any, Any, np.ndarray]:
         """How it responds, how it accepts a force, and the parameters of both, shape (p,).
 
-        Two functions decorated with ``softafm.compiled.functions.compiled``, for ``RESPONSE`` and
-        ``ACCEPTANCE``.
+        Two functions decorated with ``softafm.compiled.functions.compile_when_used``, for
+        ``RESPONSE`` and ``ACCEPTANCE``.
         """
 
     def at_start(self) -> np.ndarray:
@@ -88,7 +88,7 @@ class Spring:
     creep_time: float = 0.0
 
     def __post_init__(self):
-        object.__setattr__(self, "stiffness", positive("stiffness", self.stiffness, "N/m"))
+        object.__setattr__(self, "stiffness", check_positive("stiffness", self.stiffness, "N/m"))
 
     @property
     def compiled_response(self):
@@ -109,6 +109,6 @@ def check_lever(lever: Any) -> None:
     refuse_incomplete("lever", lever, needed, "a lever such as softafm.instrument.lever.Spring(1)")
 
 
-def lever_of(stiffness: float | None) -> Rigid | Spring:
+def make_lever(stiffness: float | None) -> Rigid | Spring:
     """Return the quasi-static lever of this stiffness, N/m; a rigid one for None."""
     return Rigid() if stiffness is None else Spring(stiffness)

@@ -44,7 +44,7 @@ class Motion(Protocol):
 
     @property
     def compiled_height(self) -> tuple[Callable, np.ndarray]:
-        """A function decorated with ``compiled(HEIGHT)``, and its parameters, shape (n,)."""
+        """A function decorated with ``compile_when_used(HEIGHT)``, and its parameters (n,)."""
 
 
 class Repeating(Protocol):
@@ -153,7 +153,7 @@ def _check_heights(motion: Any) -> None:
             _refuse(motion, f"{name}(time)", values, f"{time.size} numbers at as many times")
     function, parameters = motion.compiled_height
     if not (isinstance(function, CompiledFunction) and function.signature() == HEIGHT):
-        must = "a function decorated with softafm.compiled.functions.compiled(HEIGHT)"
+        must = "a function decorated with softafm.compiled.functions.compile_when_used(HEIGHT)"
         _refuse(motion, "compiled_height[0]", function, must)
     if not (isinstance(parameters, np.ndarray) and parameters.dtype == float):
         _refuse(motion, "compiled_height[1]", parameters, "an array of floats")

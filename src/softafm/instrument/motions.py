@@ -11,10 +11,10 @@ from typing import Any, ClassVar, Literal
 import numpy as np
 from numpy.typing import ArrayLike
 
-from softafm.checks.validate import finite, positive
+from softafm.checks.validate import check_finite, check_positive
 from softafm.instrument.trajectory import Trajectory
 
-__all__ = ["Sine", "Trajectory", "Triangle", "lowest_height"]
+__all__ = ["Sine", "Trajectory", "Triangle", "find_lowest_height"]
 
 
 @dataclass(frozen=True)
@@ -47,16 +47,16 @@ class Triangle:
     setpoint_force: float | None = None
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "start", finite("start", self.start, "m"))
-        object.__setattr__(self, "turn", finite("turn", self.turn, "m"))
-        object.__setattr__(self, "speed", positive("speed", self.speed, "m/s"))
-        object.__setattr__(self, "dwell", finite("dwell", self.dwell, "s"))
+        object.__setattr__(self, "start", check_finite("start", self.start, "m"))
+        object.__setattr__(self, "turn", check_finite("turn", self.turn, "m"))
+        object.__setattr__(self, "speed", check_positive("speed", self.speed, "m/s"))
+        object.__setattr__(self, "dwell", check_finite("dwell", self.dwell, "s"))
         if self.turn >= self.start:
             raise ValueError(f"turn = {self.turn:g} m: must be below start = {self.start:g} m")
         if self.dwell < 0:
             raise ValueError(f"dwell = {self.dwell:g} s: must be at least 0")
         if self.setpoint_force is not None:
-            force = positive("setpoint_force", self.setpoint_force, "N")
+            force = check_positive("setpoint_force", self.setpoint_force, "N")
             object.__setattr__(self, "setpoint_force", force)
 
     @classmethod
@@ -74,9 +74,9 @@ class Triangle:
         options
             ``dwell`` and ``setpoint_force``.
         """
-        mean = finite("mean_height", mean_height, "m")
-        half = positive("amplitude", amplitude, "m")
-        speed = 4 * half * positive("frequency", frequency, "Hz")
+        mean = check_finite("mean_height", mean_height, "m")
+        half = check_positive("amplitude", amplitude, "m")
+        speed = 4 * half * check_positive("frequency", frequency, "Hz")
         return cls(mean + half, mean - half, speed, **options)
 
     def turned_at(self, time: float) -> "Triangle":
@@ -154,9 +154,9 @@ class Sine:
     cycles: int | Literal["steady"] = 1
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "mean_height", finite("mean_height", self.mean_height, "m"))
-        object.__setattr__(self, "amplitude", positive("amplitude", self.amplitude, "m"))
-        object.__setattr__(self, "frequency", positive("frequency", self.frequency, "Hz"))
+        object.__setattr__(self, "mean_height", check_finite("mean_height", self.mean_height, "m"))
+        object.__setattr__(self, "amplitude", check_positive("amplitude", self.amplitude, "m"))
+        object.__setattr__(self, "frequency", check_positive("frequency", self.frequency, "Hz"))
         if isinstance(self.cycles, str) and self.cycles == "steady":
             return
         number = isinstance(self.cycles, int | float) and not isinstance(self.cycles, bool)
@@ -208,6 +208,6 @@ class Sine:
         return sine, np.array([self.mean_height, self.amplitude, self.frequency])
 
 
-def lowest_height(motion: Any) -> float:
+def find_lowest_height(motion: Any) -> float:
     """Return the lowest height of any motion, m; it is met at a break or a landmark."""
     return float(np.min(motion.height(np.concatenate([motion.breaks, motion.landmarks]))))

@@ -54,7 +54,7 @@ def fit_path(time: np.ndarray, height: np.ndarray, noise: float | None) -> Path:
     """
     unit, scale = time[-1] - time[0], float(np.ptp(height)) or 1.0
     t, y = (time - time[0]) / unit, (height - height[0]) / scale
-    sigma = max(_noise(t, y) if noise is None else noise / scale, _ROUNDING)
+    sigma = max(_estimate_noise(t, y) if noise is None else noise / scale, _ROUNDING)
     knots, cubics, bounds = _draw_by_any_noise(t, y, sigma)
     powers = scale / unit ** np.arange(3.0, -1.0, -1.0)
     cubics = cubics * powers[:, None]
@@ -87,16 +87,16 @@ def _draw_by_any_noise(t: np.ndarray, y: np.ndarray, sigma: float) -> _Drawn:
 
 def _draw(t: np.ndarray, y: np.ndarray, sigma: float) -> _Drawn:
     """Draw the simplest path that white noise allows."""
-    cuts = _needed(t, y, sigma, [0, *(_corners(t, y, sigma) + 1), t.size])
+    cuts = _keep_needed(t, y, sigma, [0, *(_find_corners(t, y, sigma) + 1), t.size])
     bounds = np.array([0.0, *(0.5 * (t[i - 1] + t[i]) for i in cuts[1:-1]), 1.0])
     for _ in range(2):  # the second time with every sample on its side of the crossings
         cuts = [0, *np.searchsorted(t, bounds[1:-1]), t.size]
-        curves = [_curve(t, y, sigma, a, b)[0] for a, b in pairwise(cuts)]
-        bounds = _crossings(t, curves, bounds)
+        curves = [_fit_curve(t, y, sigma, a, b)[0] for a, b in pairwise(cuts)]
+        bounds = _find_crossings(t, curves, bounds)
     return _Drawn(*_join(curves, bounds), bounds)
 
 
-def _noise(t: np.ndarray, y: np.ndarray) -> float:
+def _estimate_noise(t: np.ndarray, y: np.ndarray) -> float:
     """Estimate the noise from what a cubic through its four neighbours leaves of each sample."""
     windows = np.lib.stride_tricks.sliding_window_view(t, 5)
     values = np.lib.stride_tricks.sliding_window_view(y, 5)
@@ -115,7 +115,7 @@ def _noise(t: np.ndarray, y: np.ndarray) -> float:
     return 1.4826 * float(np.median(np.abs(left[changing]) / np.sqrt(variance[changing])))
 
 
-def _corners(t: np.ndarray, y: np.ndarray, sigma: float) -> np.ndarray:
+def _find_corners(t: np.ndarray, y: np.ndarray, sigma: float) -> np.ndarray:
     """Return the samples after which the path turns a corner, found at the shortest reach first."""
     n, found, reach = t.size, np.empty(0, int), _NEAREST
     while 2 * reach <= n:
@@ -124,28 +124,30 @@ def _corners(t: np.ndarray, y: np.ndarray, sigma: float) -> np.ndarray:
         inside -= np.searchsorted(found, after - reach, side="right")
         after = after[inside == 0]
         blocks = np.array_split(after, 1 + after.size * reach // _BLOCK)
-        gain = np.concatenate([_gain(t, y, sigma, block, reach) for block in blocks])
+        gain = np.concatenate([_measure_gain(t, y, sigma, block, reach) for block in blocks])
         certain = np.count_nonzero(gain > 2 * log(_CHANCE * n / reach))
         for i in np.argsort(-gain)[:certain]:
             if not found.size or np.abs(found - after[i]).min() >= reach:
-                found = np.sort(np.append(found, _place(t, y, after[i], reach)))
+                found = np.sort(np.append(found, _place_corner(t, y, after[i], reach)))
         reach = int(1.6 * reach)
     return found
 
 
-def _place(t: np.ndarray, y: np.ndarray, after: int, reach: int) -> int:
+def _place_corner(t: np.ndarray, y: np.ndarray, after: int, reach: int) -> int:
     """Return the sample near ``after`` for which one-sided fits leave least of the same samples."""
     first, last = after - reach + 1, after + reach + 1
     places = np.unique(np.linspace(after - reach // 2, after + reach // 2, 65).astype(int))
     left = [
-        _unexplained(t[None, a:b], y[None, a:b], 2)[0]
+        _measure_residuals(t[None, a:b], y[None, a:b], 2)[0]
         for place in places
         for a, b in ((first, place + 1), (place + 1, last))
     ]
     return int(places[np.argmin(np.sum(np.reshape(left, (-1, 2)), axis=1))])
 
 
-def _gain(t: np.ndarray, y: np.ndarray, sigma: float, after: np.ndarray, reach: int) -> np.ndarray:
+def _measure_gain(
+    t: np.ndarray, y: np.ndarray, sigma: float, after: np.ndarray, reach: int
+) -> np.ndarray:
     """Return by how many variances of noise two one-sided fits beat one, less what they miss.
 
     Two parabolas stand against a polynomial of degree 5, which has as many parameters and suits
@@ -153,15 +155,15 @@ def _gain(t: np.ndarray, y: np.ndarray, sigma: float, after: np.ndarray, reach: 
     """
     index = after[:, None] + np.arange(1 - reach, reach + 1)
     times, values = t[index], y[index] / sigma
-    one = _unexplained(times, values, 5)
-    two = _unexplained(times[:, :reach], values[:, :reach], 2)
-    two += _unexplained(times[:, reach:], values[:, reach:], 2)
+    one = _measure_residuals(times, values, 5)
+    two = _measure_residuals(times[:, :reach], values[:, :reach], 2)
+    two += _measure_residuals(times[:, reach:], values[:, reach:], 2)
     freedom = 2 * reach - 6
     # The noise may be a tenth larger than estimated.
     return one - two - 4 * np.maximum(two - 1.2 * freedom - sqrt(2 * freedom), 0.0)
 
 
-def _unexplained(times: np.ndarray, values: np.ndarray, degree: int) -> np.ndarray:
+def _measure_residuals(times: np.ndarray, values: np.ndarray, degree: int) -> np.ndarray:
     """Return the sums of squares that polynomials of a degree leave of rows of samples, (m,)."""
     x = times - 0.5 * (times[:, :1] + times[:, -1:])
     x /= x[:, -1:]
@@ -177,17 +179,17 @@ def _unexplained(times: np.ndarray, values: np.ndarray, degree: int) -> np.ndarr
     return np.sum(left * left, 1)
 
 
-def _needed(t: np.ndarray, y: np.ndarray, sigma: float, cuts: list[int]) -> list[int]:
+def _keep_needed(t: np.ndarray, y: np.ndarray, sigma: float, cuts: list[int]) -> list[int]:
     """Return the cuts without those in whose place one curve, over both sides, costs less."""
     kept = cuts[:1]
     for cut, end in pairwise(cuts[1:]):
-        apart = _curve(t, y, sigma, kept[-1], cut)[1] + _curve(t, y, sigma, cut, end)[1]
-        if apart < _curve(t, y, sigma, kept[-1], end)[1]:
+        apart = _fit_curve(t, y, sigma, kept[-1], cut)[1] + _fit_curve(t, y, sigma, cut, end)[1]
+        if apart < _fit_curve(t, y, sigma, kept[-1], end)[1]:
             kept.append(cut)
     return [*kept, cuts[-1]]
 
 
-def _curve(
+def _fit_curve(
     t: np.ndarray, y: np.ndarray, sigma: float, start: int, end: int
 ) -> "tuple[BSpline, float]":
     """Return the line or cubic spline through samples ``start`` to ``end`` that costs least.
@@ -214,7 +216,7 @@ def _curve(
     return best, least
 
 
-def _crossings(t: np.ndarray, curves: "list[BSpline]", bounds: np.ndarray) -> np.ndarray:
+def _find_crossings(t: np.ndarray, curves: "list[BSpline]", bounds: np.ndarray) -> np.ndarray:
     """Return the bounds moved to where neighbours cross, if they do so few samples away."""
     moved, place = bounds.copy(), np.searchsorted(t, bounds)
     for i, (before, after) in enumerate(pairwise(curves), start=1):

@@ -5,7 +5,7 @@ from typing import Any, ClassVar
 import numpy as np
 from numpy.typing import ArrayLike
 
-from softafm.checks.validate import positive, refuse_masked
+from softafm.checks.validate import check_positive, refuse_masked
 
 _CORNER = 0.1
 """Change of velocity, over its largest magnitude, that makes a sample a corner."""
@@ -52,7 +52,7 @@ class Trajectory:
     def __init__(self, time: ArrayLike, height: ArrayLike, smooth: bool = False) -> None:
         if not isinstance(smooth, bool):
             raise ValueError(f"smooth = {smooth!r}: must be True or False")
-        self.time, self.heights = _samples(time, height)
+        self.time, self.heights = _check_points(time, height)
         self.smooth = smooth
         velocity = np.diff(self.heights) / np.diff(self.time)
         corner = np.abs(np.diff(velocity)) > _CORNER * np.abs(velocity).max()
@@ -104,9 +104,9 @@ class Trajectory:
         """
         from softafm.instrument.smoothing import FEWEST, fit_path
 
-        noise = None if noise is None else positive("noise", noise, "m")
+        noise = None if noise is None else check_positive("noise", noise, "m")
         path = cls.__new__(cls)
-        path.time, path.heights = _samples(time, height)
+        path.time, path.heights = _check_points(time, height)
         if path.time.size < FEWEST:
             raise ValueError(
                 f"time has {path.time.size} entries: a measurement must have at least {FEWEST}; "
@@ -123,14 +123,14 @@ class Trajectory:
 
         self._path = PPoly(cubics, knots)
         self._rate = self._path.derivative()
-        self.corners = _read_only(corners)
-        bends = _roots_of_quadratics(3 * cubics[0], 2 * cubics[1], cubics[2])
+        self.corners = _make_read_only(corners)
+        bends = _find_roots(3 * cubics[0], 2 * cubics[1], cubics[2])
         bends = (bends + knots[:-1])[(bends > 0) & (bends < np.diff(knots))]
         points = np.union1d(knots, bends)
-        turns = points[_turns(self._path(points), self.noise or 0.0)]
-        self._speeds = _top_speeds(cubics, np.diff(knots))
-        calm = _calm_stretches(knots, self._speeds, float(np.ptp(self._path(points))))
-        self.landmarks = _read_only(np.setdiff1d(np.union1d(turns, calm), knots[[0, -1]]))
+        turns = points[_find_turns(self._path(points), self.noise or 0.0)]
+        self._speeds = _find_top_speeds(cubics, np.diff(knots))
+        calm = _find_calm_stretches(knots, self._speeds, float(np.ptp(self._path(points))))
+        self.landmarks = _make_read_only(np.setdiff1d(np.union1d(turns, calm), knots[[0, -1]]))
 
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, Trajectory):
@@ -226,9 +226,9 @@ class Trajectory:
         return sampled, np.concatenate([self._path.x, self._path.c.ravel()])
 
 
-def _samples(time: ArrayLike, height: ArrayLike) -> tuple[np.ndarray, np.ndarray]:
+def _check_points(time: ArrayLike, height: ArrayLike) -> tuple[np.ndarray, np.ndarray]:
     """Return copies of samples that make a motion, read-only, or raise ValueError."""
-    time, height = as_numbers("time", time), as_numbers("height", height)
+    time, height = check_numbers("time", time), check_numbers("height", height)
     if time.ndim != 1 or time.shape != height.shape or time.size < 2:
         raise ValueError(
             f"time and height have shapes {time.shape} and {height.shape}: must be "
@@ -244,10 +244,10 @@ def _samples(time: ArrayLike, height: ArrayLike) -> tuple[np.ndarray, np.ndarray
         raise ValueError(
             f"time[{i}] = {time[i]:g} s: must be later than time[{i - 1}] = {time[i - 1]:g} s"
         )
-    return _read_only(time), _read_only(height)
+    return _make_read_only(time), _make_read_only(height)
 
 
-def as_numbers(name: str, values: ArrayLike) -> np.ndarray:
+def check_numbers(name: str, values: ArrayLike) -> np.ndarray:
     """Return a copy of ``values`` as an array of floats, or raise ValueError naming them."""
     refuse_masked(name, values)
     try:
@@ -256,19 +256,19 @@ def as_numbers(name: str, values: ArrayLike) -> np.ndarray:
         raise ValueError(f"{name}: must be a sequence of numbers") from None
 
 
-def _read_only(values: np.ndarray) -> np.ndarray:
+def _make_read_only(values: np.ndarray) -> np.ndarray:
     values.setflags(write=False)
     return values
 
 
-def _roots_of_quadratics(a: np.ndarray, b: np.ndarray, c: np.ndarray) -> np.ndarray:
+def _find_roots(a: np.ndarray, b: np.ndarray, c: np.ndarray) -> np.ndarray:
     """Return the real roots of a x² + b x + c, shape (2, n); NaN where there is none."""
     with np.errstate(invalid="ignore", divide="ignore", over="ignore"):
         q = -0.5 * (b + np.copysign(np.sqrt(b * b - 4 * a * c), b))
         return np.array([q / a, c / q])
 
 
-def _top_speeds(cubics: np.ndarray, duration: np.ndarray) -> np.ndarray:
+def _find_top_speeds(cubics: np.ndarray, duration: np.ndarray) -> np.ndarray:
     """Return the largest magnitude of the velocity of each cubic over its duration (s), m/s."""
     cube, square, start, _ = cubics
     speed = np.maximum(abs(start), abs(start + duration * (2 * square + 3 * cube * duration)))
@@ -278,7 +278,7 @@ def _top_speeds(cubics: np.ndarray, duration: np.ndarray) -> np.ndarray:
     return speed
 
 
-def _turns(height: np.ndarray, reversal: float) -> list[int]:
+def _find_turns(height: np.ndarray, reversal: float) -> list[int]:
     """Return the indices of the extremes between which heights change by more than ``reversal``.
 
     The lowest of all is among them.
@@ -296,7 +296,7 @@ def _turns(height: np.ndarray, reversal: float) -> list[int]:
     return sorted(set(found))
 
 
-def _calm_stretches(knots: np.ndarray, speeds: np.ndarray, travel: float) -> np.ndarray:
+def _find_calm_stretches(knots: np.ndarray, speeds: np.ndarray, travel: float) -> np.ndarray:
     """Return the times (s) at which stretches of slow motion begin and end.
 
     A solver that takes no step longer than a part of the way at the fastest speed to come is not

@@ -4,10 +4,10 @@ from dataclasses import dataclass
 from typing import ClassVar, Literal
 
 from softafm.checks.kinds import refuse_other
-from softafm.checks.validate import finite, one_of, positive
+from softafm.checks.validate import check_choice, check_finite, check_positive
 from softafm.instrument.cantilever import Cantilever
 from softafm.instrument.motions import Sine, Trajectory, Triangle
-from softafm.modes.driven import drive_of
+from softafm.modes.driven import make_drive
 from softafm.modes.start import refuse_other_than_cantilever
 
 
@@ -44,15 +44,15 @@ class AmplitudeModulation:
 
     def __post_init__(self) -> None:
         refuse_other_than_cantilever(self.cantilever)
-        free = positive("free_amplitude", self.free_amplitude, "m")
-        setpoint = finite("setpoint", self.setpoint, "(amplitude over free amplitude)")
+        free = check_positive("free_amplitude", self.free_amplitude, "m")
+        setpoint = check_finite("setpoint", self.setpoint, "(amplitude over free amplitude)")
         if not 0 < setpoint < 1:
             raise ValueError(
                 f"setpoint = {setpoint:g}: must be above 0 and below 1, the amplitude over the "
                 "free amplitude"
             )
-        drive_of(self.cantilever, free, self.drive_frequency)
-        one_of("engaged", self.engaged, ("approach", "attractive", "repulsive"))
+        make_drive(self.cantilever, free, self.drive_frequency)
+        check_choice("engaged", self.engaged, ("approach", "attractive", "repulsive"))
         object.__setattr__(self, "free_amplitude", free)
         object.__setattr__(self, "setpoint", setpoint)
 

@@ -6,10 +6,10 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from softafm.checks.refusals import ConfigError, nearest, one_of, refuse_unknown, reword, shown
+from softafm.checks.refusals import ConfigError, join_with_or, refuse_unknown, reword, show, suggest
 from softafm.experiment.config import build_table, load_document, set_value
-from softafm.experiment.entries import Frequency, Length, Ratio, Tabor, Tolerance, choice_of
-from softafm.experiment.schema import Table, built, chosen
+from softafm.experiment.entries import Frequency, Length, Ratio, Tabor, Tolerance, make_choice
+from softafm.experiment.schema import Table, build_choice, build_kind
 from softafm.experiment.takers import MAP_MODES, refuse_unless
 from softafm.maps.imaging import AmplitudeModulation, ForceVolume
 from softafm.maps.map_tables import PATTERNS
@@ -30,7 +30,7 @@ class SetpointMotion(Table):
     free_amplitude: Length
     setpoint: Ratio
     drive_frequency: Frequency | None = None
-    engaged: choice_of({name: name for name in _BRANCHES}) = "approach"  # type: ignore[valid-type]
+    engaged: make_choice({name: name for name in _BRANCHES}) = "approach"  # type: ignore[valid-type]
 
 
 class MapRun(Table):
@@ -106,9 +106,9 @@ def build_map(document: Mapping[str, Any], folder: Path) -> MapExperiment:
     if isinstance(mode, str) and mode in MODES:
         refuse_unless(document, "scan")
     if mode is None:
-        raise ConfigError([f"mode: missing; must be {one_of(MAP_MODES)}"])
+        raise ConfigError([f"mode: missing; must be {join_with_or(MAP_MODES)}"])
     if mode not in MAP_MODES:
-        raise ConfigError([f"mode = {shown(mode)}: {nearest(mode, MAP_MODES)}"])
+        raise ConfigError([f"mode = {show(mode)}: {suggest(mode, MAP_MODES)}"])
     known = ["mode", "tip", "cantilever", "motion", "map", "run"]
     problems = [refuse_unknown(key, known, key) for key in document if key not in known]
 
@@ -117,7 +117,7 @@ def build_map(document: Mapping[str, Any], folder: Path) -> MapExperiment:
             if name not in document:
                 raise ConfigError([f"{name}: missing; add a table [{name}]"])
             if not isinstance(document[name], dict):
-                raise ConfigError([f"{name} = {shown(document[name])}: must be a table, [{name}]"])
+                raise ConfigError([f"{name} = {show(document[name])}: must be a table, [{name}]"])
             return build(document[name])
         except ConfigError as error:
             problems.extend(str(error).splitlines())
@@ -129,16 +129,17 @@ def build_map(document: Mapping[str, Any], folder: Path) -> MapExperiment:
     tip = as_of(force_distance.MODE, "tip")
     if mode == "tapping-map":
         lever = as_of(approach.MODE, "cantilever")
-        motion = read("motion", lambda t: built("motion", t, SetpointMotion, folder=folder))
+        motion = read("motion", lambda t: build_kind("motion", t, SetpointMotion, folder=folder))
     else:
         lever = as_of(spectroscopy.MODE, "cantilever") if "cantilever" in document else None
         motion = as_of(force_distance.MODE, "motion")
     table = read(
-        "map", lambda t: chosen("map", t, "pattern", PATTERNS, default="uniform", folder=folder)
+        "map",
+        lambda t: build_choice("map", t, "pattern", PATTERNS, default="uniform", folder=folder),
     )
     run = MapRun()
     if "run" in document:
-        run = read("run", lambda t: built("run", t, MapRun, folder=folder))
+        run = read("run", lambda t: build_kind("run", t, MapRun, folder=folder))
     if problems:
         raise ConfigError(problems)
     _refuse_flow(mode, table.materials)
@@ -180,4 +181,4 @@ def _reword(document: Mapping[str, Any], error: ValueError) -> str:
     key = next((key for key in ("start", "mean_height", "file") if key in written), None)
     if match is None or key is None:
         return f"map: {error}"
-    return f"motion.{key} = {shown(written[key])}: {match[2]} at {match[1]}"
+    return f"motion.{key} = {show(written[key])}: {match[2]} at {match[1]}"

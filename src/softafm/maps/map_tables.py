@@ -9,12 +9,12 @@ from typing import Annotated, Any, ClassVar
 import numpy as np
 from pydantic import Field, ValidationInfo, create_model, field_validator
 
-from softafm.checks.refusals import ConfigError, shown
+from softafm.checks.refusals import ConfigError, show
 from softafm.contact import Contact
 from softafm.experiment import schema
 from softafm.experiment.config import build_table
 from softafm.experiment.entries import Entries, Extent, Image, Length, Number, Pixels, Ratio, Whole
-from softafm.experiment.schema import Table, built
+from softafm.experiment.schema import Table, build_kind
 from softafm.maps.patterns import make_blend
 from softafm.maps.sample_map import SampleMap, find_grey_values, refuse_unknown
 
@@ -75,9 +75,9 @@ class MapTable(Table):
         for index, each in enumerate(written):
             name = f"materials[{index}]"
             if not isinstance(each, dict):
-                raise ConfigError([f"{name} = {shown(each)}: must be a table, [[map.materials]]"])
+                raise ConfigError([f"{name} = {show(each)}: must be a table, [[map.materials]]"])
             try:
-                found.append(built(name, each, Material, folder=_find_folder(info)))
+                found.append(build_kind(name, each, Material, folder=_find_folder(info)))
             except ConfigError as error:
                 problems += str(error).splitlines()
         if problems:
@@ -230,8 +230,8 @@ def _refuse_unknown(path: str, name: str, material: Material) -> None:
 def _read_values(path: str, written: Any, kind: Any, info: ValidationInfo) -> np.ndarray:
     """Return the array that an inline table of an image stands for."""
     if not isinstance(written, dict):
-        raise ConfigError([f"{path} = {shown(written)}: must be a table with image, from and to"])
-    return built(path, written, _make_image_table(kind), folder=_find_folder(info))
+        raise ConfigError([f"{path} = {show(written)}: must be a table with image, from and to"])
+    return build_kind(path, written, _make_image_table(kind), folder=_find_folder(info))
 
 
 def _is_array(path: Path) -> bool:

@@ -4,7 +4,7 @@ from math import pi
 
 import numpy as np
 
-from softafm.checks.validate import finite, positive
+from softafm.checks.validate import check_finite, check_positive
 
 _WAVES = 200
 _SIGMAS = 4
@@ -52,12 +52,15 @@ def make_blend(
     """
     from scipy.ndimage import gaussian_filter
 
-    feature, interphase = positive("feature", feature, "m"), finite("interphase", interphase, "m")
+    feature, interphase = (
+        check_positive("feature", feature, "m"),
+        check_finite("interphase", interphase, "m"),
+    )
     if interphase < 0:
         raise ValueError(f"interphase = {interphase:g} m: must be at least 0")
-    if not 0 < finite("share", share, "") < 1:
+    if not 0 < check_finite("share", share, "") < 1:
         raise ValueError(f"share = {share:g}: must be above 0 and below 1")
-    width, depth = (positive(f"size[{i}]", each, "m") for i, each in enumerate(size))
+    width, depth = (check_positive(f"size[{i}]", each, "m") for i, each in enumerate(size))
     ny, nx = shape
     pixel = (depth / ny, width / nx)
     if feature < max(pixel):

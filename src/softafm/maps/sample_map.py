@@ -9,8 +9,8 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
-from softafm.checks.kinds import list_of, refuse_other
-from softafm.checks.validate import positive, refuse_masked
+from softafm.checks.kinds import check_list, refuse_other
+from softafm.checks.validate import check_positive, refuse_masked
 from softafm.contact import Contact
 
 _PARTS = ("sample", "surface")
@@ -66,7 +66,7 @@ class SampleMap:
     height: Any = None
 
     def __post_init__(self) -> None:
-        materials = tuple(list_of("materials", self.materials, Contact, "a softafm.Contact"))
+        materials = tuple(check_list("materials", self.materials, Contact, "a softafm.Contact"))
         if not materials:
             raise ValueError("materials = []: must be a softafm.Contact, or several in a list")
         if any(each.tip != materials[0].tip for each in materials):
@@ -297,11 +297,11 @@ def _check_image(name: str, values) -> np.ndarray:
 
 def _check_size(size, shape) -> tuple[float, float]:
     if np.ndim(size) == 0:
-        width = positive("size", size, "m")
+        width = check_positive("size", size, "m")
         return width, width * shape[0] / shape[1]
     if len(size) != 2:
         raise ValueError(f"size = {size!r}: must be a length, or those along x and y, in m")
-    return positive("size[0]", size[0], "m"), positive("size[1]", size[1], "m")
+    return check_positive("size[0]", size[0], "m"), check_positive("size[1]", size[1], "m")
 
 
 def _split(values: Mapping[str, float]):

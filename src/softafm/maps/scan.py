@@ -13,14 +13,19 @@ import numpy as np
 
 from softafm.checks.gathering import Placed, gather
 from softafm.checks.kinds import refuse_other
-from softafm.checks.validate import tabor_of, tolerance_of, whole
+from softafm.checks.validate import check_tabor, check_tolerance, check_whole
 from softafm.errors import AccuracyWarning
 from softafm.maps import curve_pixels, tapped_lines
 from softafm.maps.imaging import AmplitudeModulation, ForceVolume
 from softafm.maps.sample_map import SampleMap
-from softafm.modes.start import refuse_start_inside, refuse_tapped_flow, refuse_unable, solver_of
-from softafm.progress import Progress, reporting
-from softafm.results.datasets import dataset, describe, describe_misfit
+from softafm.modes.start import (
+    choose_solver,
+    refuse_start_inside,
+    refuse_tapped_flow,
+    refuse_unable,
+)
+from softafm.progress import Progress, make_reporter
+from softafm.results.datasets import assemble_history, describe, describe_misfit
 
 if TYPE_CHECKING:
     from xarray import Dataset
@@ -85,11 +90,11 @@ def scan(
     refuse_other("sample", sample, SampleMap, "a softafm.SampleMap")
     kinds = AmplitudeModulation, ForceVolume
     refuse_other("imaging", imaging, kinds, "an AmplitudeModulation or a ForceVolume")
-    tolerance, workers = tolerance_of(tolerance), whole("workers", workers, 1, 1024)
-    solver = solver_of(solver)
+    tolerance, workers = check_tolerance(tolerance), check_whole("workers", workers, 1, 1024)
+    solver = choose_solver(solver)
     contacts = sample.pixels.contacts
     if regularise is not None:
-        tabor = tabor_of("regularise", regularise)
+        tabor = check_tabor("regularise", regularise)
         contacts = [_call_at_pixel(sample, i, c.regularised, tabor) for i, c in enumerate(contacts)]
     take: Callable
     if isinstance(imaging, AmplitudeModulation):
@@ -99,7 +104,7 @@ def scan(
         take, refuse = _take_curves, partial(refuse_start_inside, motion=imaging.motion)
     for i, contact in enumerate(contacts):
         _call_at_pixel(sample, i, refuse, contact)
-    with reporting(progress) as report:
+    with make_reporter(progress) as report:
         names, values, failures, doubts, done = take(
             sample, contacts, imaging, solver, tolerance, workers, report
         )
@@ -250,7 +255,7 @@ def _assemble(sample, imaging, solver, tolerance, names, values, warned, done) -
         "map": {"size": [width, depth], "fields": list(sample.fields)},
         "imaging": describe(imaging),
     }
-    result = dataset(
+    result = assemble_history(
         imaging.kind, sample.materials[0], parts, solver, tolerance, data, coordinates, warned, done
     )
     for name, array in sample.fields.items():

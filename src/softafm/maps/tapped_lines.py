@@ -14,12 +14,12 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from softafm.checks.gathering import Placed, keep_worst
-from softafm.checks.validate import tolerance_of
+from softafm.checks.validate import check_tolerance
 from softafm.errors import AccuracyWarning, DivergedError
 from softafm.maps.imaging import AmplitudeModulation
 from softafm.maps.setpoint import ATTRACTIVE, REPULSIVE, Lost, Point, Setpoint
 from softafm.modes.approach import approach_curve
-from softafm.modes.driven import drive_of
+from softafm.modes.driven import make_drive
 from softafm.modes.tap_map import OBSERVABLES
 
 NAMES = ("mean_height", "phase", "branch", *OBSERVABLES)
@@ -103,9 +103,11 @@ class Taken:
 
 def make_setpoint(imaging: AmplitudeModulation, solver, tolerance: float) -> Setpoint:
     """Return what finds the taps of a way of imaging."""
-    drive, frequency = drive_of(imaging.cantilever, imaging.free_amplitude, imaging.drive_frequency)
+    drive, frequency = make_drive(
+        imaging.cantilever, imaging.free_amplitude, imaging.drive_frequency
+    )
     amplitude = imaging.setpoint * imaging.free_amplitude
-    return Setpoint(drive, frequency, amplitude, solver, tolerance_of(tolerance))
+    return Setpoint(drive, frequency, amplitude, solver, check_tolerance(tolerance))
 
 
 def walk(setpoint: Setpoint, spots: list[Spot], branch: int, known: Known) -> Taken:

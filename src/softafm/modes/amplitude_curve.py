@@ -51,14 +51,14 @@ class AmplitudeCurve:
     def at_amplitudes(self, amplitudes) -> Solutions:
         """All solutions of given amplitudes, m, shape (n,)."""
         approaches = np.linspace(self._taps.farthest, self._taps.nearest, _APPROACHES)
-        row, approach = _zeros(lambda a, d: self._excess(a, d), amplitudes, approaches)
+        row, approach = _find_zeros(lambda a, d: self._excess(a, d), amplitudes, approaches)
         return self._solutions(row, amplitudes[row], approach)
 
     def at_heights(self, heights) -> Solutions:
         """All solutions at given mean heights, m, shape (n,), within the amplitudes of the map."""
         span = 1e-3 * (self._taps.highest - self._taps.lowest)
         amplitudes = np.linspace(self._taps.lowest - span, self._taps.highest + span, _AMPLITUDES)
-        row, amplitude = _zeros(lambda z, a: self._excess(a, z - a), heights, amplitudes)
+        row, amplitude = _find_zeros(lambda z, a: self._excess(a, z - a), heights, amplitudes)
         return self._solutions(row, amplitude, heights[row] - amplitude)
 
     def observables(self, solutions: Solutions) -> np.ndarray:
@@ -108,7 +108,7 @@ def _follow(columns, found: Solutions, way) -> np.ndarray:
     return values
 
 
-def _zeros(function, rows, points):
+def _find_zeros(function, rows, points):
     """Zeros of function(row, point) between neighbours of ``points``, for every row at once.
 
     Returns the indices of the rows and the zeros, to 1e-9 of the distance of neighbours; values of

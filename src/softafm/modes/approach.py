@@ -13,21 +13,27 @@ from numpy.typing import ArrayLike
 
 from softafm.checks.callers import warn_caller
 from softafm.checks.gathering import Placed, collect_warnings, gather
-from softafm.checks.validate import positive, tolerance_of
+from softafm.checks.validate import check_positive, check_tolerance
 from softafm.contact import Contact
 from softafm.errors import AccuracyWarning
 from softafm.instrument.cantilever import Cantilever
 from softafm.instrument.motions import Sine
 from softafm.modes.amplitude_curve import BRANCHES, AmplitudeCurve, Solutions
-from softafm.modes.driven import AmplitudeSweep, deepest_tap, doubt_sine, drive_of, ratios_of
+from softafm.modes.driven import (
+    AmplitudeSweep,
+    doubt_sine,
+    estimate_deepest_tap,
+    make_drive,
+    ratios_of,
+)
 from softafm.modes.mode import Mode
 from softafm.modes.parts import Axes, Foreseen, Inputs, Outcome, Row, Settings
 from softafm.modes.perform import perform
 from softafm.modes.scales import Scales, tap_scales
-from softafm.modes.start import refuse_tapped_flow, solver_of
+from softafm.modes.start import choose_solver, refuse_tapped_flow
 from softafm.modes.tap_map import OBSERVABLES, TapMap
 from softafm.modes.tapping import observe_taps
-from softafm.progress import Progress, reporting
+from softafm.progress import Progress, make_reporter
 from softafm.results.content import DIRECTIONS, observables
 from softafm.units.quantities import write_quantity
 
@@ -102,11 +108,11 @@ def approach_curve(
 def _simulate(inputs: Inputs, settings: Settings) -> Outcome:
     """Sample taps, and find the solutions and the sweep of the height on them."""
     contact, sweep = inputs.contact, inputs.motion
-    tolerance, solver = tolerance_of(settings.tolerance), solver_of(settings.solver)
+    tolerance, solver = check_tolerance(settings.tolerance), choose_solver(settings.solver)
     refuse_tapped_flow(contact)
     ratios = ratios_of(sweep.amplitude_ratio)
-    free_amplitude = positive("free_amplitude", sweep.free_amplitude, "m")
-    drive, frequency = drive_of(inputs.cantilever, free_amplitude, sweep.drive_frequency)
+    free_amplitude = check_positive("free_amplitude", sweep.free_amplitude, "m")
+    drive, frequency = make_drive(inputs.cantilever, free_amplitude, sweep.drive_frequency)
 
     doubts: list[Placed] = []
 
@@ -123,15 +129,15 @@ def _simulate(inputs: Inputs, settings: Settings) -> Outcome:
         tap, drive.excess, ratios.min() * free_amplitude, ratios.max() * free_amplitude,
         contact.reach, tolerance,
     )  # fmt: skip
-    with reporting(settings.progress) as report:
+    with make_reporter(settings.progress) as report:
         for done in taps.explore():
             if report is not None:
                 report(1 - np.exp(-done / 80), f"{done} taps")
     curve = AmplitudeCurve(taps, drive)
     found = curve.at_amplitudes(ratios * free_amplitude)
-    doubtful = list(_warnings(taps, tap, drive, tolerance, found))
+    doubtful = list(_collect_warnings(taps, tap, drive, tolerance, found))
     checks = _solutions_to_check(found).size
-    warned = [*gather(doubts, taps.taps + checks, "taps", _where), *doubtful]
+    warned = [*gather(doubts, taps.taps + checks, "taps", _describe_place), *doubtful]
     for warning in warned:
         warn_caller(warning)
     motion = {
@@ -141,11 +147,11 @@ def _simulate(inputs: Inputs, settings: Settings) -> Outcome:
         "drive_frequency": frequency,
     }
     parts = {**inputs.parts, "motion": motion}
-    data, coordinates = _tables(curve, ratios, found)
+    data, coordinates = _make_tables(curve, ratios, found)
     return Outcome(parts, solver, tolerance, data, coordinates, tuple(warned), {"taps": taps.taps})
 
 
-def _where(tap: tuple[float, float]) -> str:
+def _describe_place(tap: tuple[float, float]) -> str:
     amplitude, approach = tap
     height = write_quantity(amplitude + approach, "m")
     return f"amplitude {write_quantity(amplitude, 'm')} and mean height {height}"
@@ -157,7 +163,7 @@ def _solutions_to_check(found: Solutions) -> np.ndarray:
     return np.unique(np.linspace(0, count - 1, min(count, _CHECKS)).astype(int))
 
 
-def _warnings(taps, tap, drive, tolerance, found: Solutions) -> Iterator[AccuracyWarning]:
+def _collect_warnings(taps, tap, drive, tolerance, found: Solutions) -> Iterator[AccuracyWarning]:
     """Tell of missing and surplus solutions, and run a few again to see whether they hold."""
     if found.amplitude.size == 0:
         yield AccuracyWarning("no height goes with any of the amplitudes: there is nothing to plot")
@@ -177,7 +183,9 @@ def _warnings(taps, tap, drive, tolerance, found: Solutions) -> Iterator[Accurac
                 "height: taps between those that were run are not smooth"
             )
             wrong.append(((amplitude, approach), AccuracyWarning(text, off)))
-    yield from gather(wrong, _solutions_to_check(found).size, "solutions that were checked", _where)
+    yield from gather(
+        wrong, _solutions_to_check(found).size, "solutions that were checked", _describe_place
+    )
     labels = list(zip(found.row, found.branch, strict=True))
     for branch in ("attractive", "repulsive"):
         if any(labels.count((row, branch)) > 1 for row in set(found.row)):
@@ -187,7 +195,7 @@ def _warnings(taps, tap, drive, tolerance, found: Solutions) -> Iterator[Accurac
             )
 
 
-def _tables(curve: AmplitudeCurve, ratios, found: Solutions):
+def _make_tables(curve: AmplitudeCurve, ratios, found: Solutions):
     """Return variables and coordinates of the dataset, each as (dims, values)."""
     names = ("mean_height", "phase", *OBSERVABLES)
     table = np.full((len(names), len(BRANCHES), ratios.size), np.nan)
@@ -225,7 +233,7 @@ def _scale(inputs: Inputs, result: "Dataset") -> Scales:
 def _foresee(inputs: Inputs) -> Foreseen:
     """Return the tap that goes deepest, and what drives the lever and can be fed by that."""
     contact, sweep = inputs.contact, inputs.motion
-    drive, frequency = drive_of(inputs.cantilever, sweep.free_amplitude, sweep.drive_frequency)
+    drive, frequency = make_drive(inputs.cantilever, sweep.free_amplitude, sweep.drive_frequency)
     amplitudes = sweep.free_amplitude * np.array(sweep.amplitude_ratio)
     words = f"driven at {drive.detuning:.4g} of the resonance, Q = {drive.quality_factor:.4g}"
     most = write_quantity(drive.most_dissipation, "J")
@@ -235,7 +243,7 @@ def _foresee(inputs: Inputs) -> Foreseen:
         Row("force of the drive", write_quantity(drive.force, "N"), "amplitude, on the tip"),
         Row("largest dissipation", most, "that the drive can feed, a cycle"),
     )
-    deepest = deepest_tap(contact, drive, frequency, amplitudes)
+    deepest = estimate_deepest_tap(contact, drive, frequency, amplitudes)
     return Foreseen(deepest, _TAPS, "tap", "of a tap: Hertz against the drive", rows)
 
 

@@ -9,10 +9,10 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from softafm.checks.callers import warn_caller
-from softafm.checks.validate import one_of, tolerance_of
+from softafm.checks.validate import check_choice, check_tolerance
 from softafm.errors import AccuracyWarning, DivergedError
-from softafm.modes.start import solver_of
-from softafm.progress import Progress, reporting
+from softafm.modes.start import choose_solver
+from softafm.progress import Progress, make_reporter
 from softafm.results.datasets import describe
 
 if TYPE_CHECKING:
@@ -43,7 +43,7 @@ class Difference(NamedTuple):
     units: str
 
 
-def finer_run(check: bool, solver, tolerance: float) -> Finer | None:
+def plan_finer_run(check: bool, solver, tolerance: float) -> Finer | None:
     """Return how to repeat a run of a solver (None: the default one); None without a check.
 
     A tenth of the tolerance, at least 1e-5; of a solver of fixed steps twice the steps, nodes and
@@ -54,8 +54,8 @@ def finer_run(check: bool, solver, tolerance: float) -> Finer | None:
     ValueError
         If there is nothing finer, or an argument is none such.
     """
-    tolerance, solver = tolerance_of(tolerance), solver_of(solver)
-    if not one_of("check", check, (True, False)):
+    tolerance, solver = check_tolerance(tolerance), choose_solver(solver)
+    if not check_choice("check", check, (True, False)):
         return None
     if solver.adaptive:
         if tolerance < _LEAST:
@@ -117,7 +117,7 @@ def compare_with_finer(
         )
     else:
         judged = scales(other)
-        found = _differences(mode, result, other, judged)
+        found = _find_differences(mode, result, other, judged)
         problem = _say_largest(found, tolerance, finer) or _repeat_doubt(other, finer)
         if "mean_height" in found:
             height = judged.fixed["mean_height"] * abs(found["mean_height"].relative)
@@ -133,7 +133,7 @@ def compare_with_finer(
 
 def _run_again(finer: Finer, repeat, progress) -> "Dataset":
     """Run again, without the warnings of that run."""
-    with warnings.catch_warnings(), reporting(progress) as report:
+    with warnings.catch_warnings(), make_reporter(progress) as report:
         warnings.simplefilter("ignore", AccuracyWarning)
 
         def pass_on(fraction: float, message: str) -> None:
@@ -169,7 +169,7 @@ def _repeat_doubt(other: "Dataset", finer: Finer) -> str | None:
     return f"the check, with {finer.in_words}, warns: {doubts[0]}" if doubts else None
 
 
-def _differences(
+def _find_differences(
     mode: "Mode", result: "Dataset", other: "Dataset", scales: "Scales"
 ) -> dict[str, Difference]:
     """Compare all observables that have a unit, and how many solutions there are."""
@@ -187,11 +187,11 @@ def _differences(
                 float(relative[worst]), float(value[worst]), float(finer[worst]), units
             )
     if mode.gaps:
-        found["solutions"] = _solutions(result[mode.observed[0]], other[mode.observed[0]])
+        found["solutions"] = _compare_solutions(result[mode.observed[0]], other[mode.observed[0]])
     return found
 
 
-def _solutions(one: "DataArray", two: "DataArray") -> Difference:
+def _compare_solutions(one: "DataArray", two: "DataArray") -> Difference:
     """Compare how many solutions there are, and where."""
     here, there = np.isfinite(one.values), np.isfinite(two.values)
     share = int(np.sum(here != there)) / max(1, int(np.sum(there)))

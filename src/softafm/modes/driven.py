@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 
-from softafm.checks.validate import finite, positive, refuse_masked
+from softafm.checks.validate import check_finite, check_positive, refuse_masked
 from softafm.contact import Contact
 from softafm.errors import AccuracyWarning
 from softafm.instrument.cantilever import Cantilever
@@ -38,12 +38,12 @@ def ratios_of(values) -> np.ndarray:
     if array.ndim != 1 or array.size == 0:
         raise ValueError(f"amplitude_ratio has shape {array.shape}: must be a list of numbers")
     for i, value in enumerate(array):
-        if not 0 < finite(f"amplitude_ratio[{i}]", value, "") < 1:
+        if not 0 < check_finite(f"amplitude_ratio[{i}]", value, "") < 1:
             raise ValueError(f"amplitude_ratio[{i}] = {value:g}: must be above 0 and below 1")
     return array
 
 
-def drive_of(cantilever: Cantilever, free_amplitude, drive_frequency=None) -> tuple[Drive, float]:
+def make_drive(cantilever: Cantilever, free_amplitude, drive_frequency=None) -> tuple[Drive, float]:
     """Return the drive of a lever and its frequency, Hz; ValueError if it cannot be driven."""
     quality, resonance = cantilever.quality_factor, cantilever.frequency
     if quality is None or resonance is None:
@@ -51,11 +51,11 @@ def drive_of(cantilever: Cantilever, free_amplitude, drive_frequency=None) -> tu
         raise ValueError(f"cantilever.{name} = None: must be given for an approach curve")
     frequency = resonance
     if drive_frequency is not None:
-        frequency = positive("drive_frequency", drive_frequency, "Hz")
+        frequency = check_positive("drive_frequency", drive_frequency, "Hz")
     return Drive(cantilever.stiffness, quality, frequency / resonance, free_amplitude), frequency
 
 
-def deepest_tap(contact: Contact, drive: Drive, frequency: float, amplitudes) -> Sine:
+def estimate_deepest_tap(contact: Contact, drive: Drive, frequency: float, amplitudes) -> Sine:
     """Estimate which tap of several amplitudes, m, indents most, before any run.
 
     A brief contact has V = −A F with the mean force F, at most half of what the drive can push

@@ -7,10 +7,10 @@ from inspect import Parameter, signature
 from typing import TYPE_CHECKING, Any, Literal
 
 from softafm.checks.suggestions import call_also
-from softafm.checks.validate import one_of
+from softafm.checks.validate import check_choice
 from softafm.modes.parts import Axes, Foreseen, Inputs, Layout, Outcome, Settings
 from softafm.modes.scales import Scales, force_scales
-from softafm.results.content import HISTORY, Needed, Observable, declare, unit_of
+from softafm.results.content import HISTORY, Needed, Observable, declare, find_unit
 
 if TYPE_CHECKING:
     from xarray import Dataset
@@ -106,7 +106,7 @@ class Mode:
     def __post_init__(self):
         if (self.observe is None) == (self.simulate is None):
             raise ValueError(f"mode '{self.name}': must have either observe or simulate")
-        one_of(f"mode '{self.name}': lever", self.lever, ("", "stiffness", "resonator"))
+        check_choice(f"mode '{self.name}': lever", self.lever, ("", "stiffness", "resonator"))
         if not self.motions:
             raise ValueError(f"mode '{self.name}': motions is empty; must hold at least one")
         asked = () if self.takes_motion else self.motions.values()
@@ -166,7 +166,7 @@ def register(mode: Mode) -> None:
         dimension of the axes is.
     """
     for name in mode.axes.dims:
-        if name not in mode.observables and unit_of(name) is None:
+        if name not in mode.observables and find_unit(name) is None:
             raise ValueError(
                 f"mode '{mode.name}': the dimension {name} must be among the observables, as "
                 f"Observable(unit, words, ('{name}',))"

@@ -5,16 +5,16 @@ from functools import partial
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
-from softafm.checks.refusals import all_of
+from softafm.checks.refusals import join_with_and
 from softafm.contact import Contact
 from softafm.instrument.cantilever import Cantilever
-from softafm.modes.check import compare_with_finer, finer_run
+from softafm.modes.check import compare_with_finer, plan_finer_run
 from softafm.modes.mode import MODES, Mode
 from softafm.modes.parts import Inputs, Outcome, Settings
 from softafm.modes.start import carry, refuse_other_than_cantilever, regularise_contact
 from softafm.progress import Progress
 from softafm.results.content import HISTORY
-from softafm.results.datasets import dataset, history_variables, record_regularisation
+from softafm.results.datasets import assemble_history, history_variables, record_regularisation
 
 if TYPE_CHECKING:
     from xarray import Dataset
@@ -54,13 +54,13 @@ def perform(
     """
     if MODES.get(mode.name) is not mode:
         raise ValueError(f"mode '{mode.name}' is not known: call softafm.modes.register with it")
-    finer = finer_run(check, solver, tolerance)
+    finer = plan_finer_run(check, solver, tolerance)
     given, contact = contact, regularise_contact(contact, regularise)
     if mode.lever:
         refuse_other_than_cantilever(cantilever)
     inputs = Inputs(contact, motion, cantilever, tables)
     found = simulate(mode, inputs, Settings(solver, tolerance, profiles, progress))
-    result = dataset(mode.name, contact, *found)
+    result = assemble_history(mode.name, contact, *found)
     record_regularisation(result, given, contact, regularise)
     if finer is not None:
         repeat = partial(perform, mode, contact, motion, cantilever, tables=tables)
@@ -81,8 +81,8 @@ def simulate(mode: Mode, inputs: Inputs, settings: Settings) -> Outcome:
     values = mode.observe(contact, motion, history)
     if values.keys() != mode.observables.keys():
         raise ValueError(
-            f"mode '{mode.name}': observe returns {all_of(sorted(values))}, but the observables "
-            f"are {all_of(sorted(mode.observables))}"
+            f"mode '{mode.name}': observe returns {join_with_and(sorted(values))}, but the "
+            f"observables are {join_with_and(sorted(mode.observables))}"
         )
     observed = {name: (mode.observables[name].dims, each) for name, each in values.items()}
     data = {name: data[name] for name in HISTORY} | observed | data  # shapes of the surface last

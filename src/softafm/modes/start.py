@@ -4,12 +4,12 @@ from dataclasses import replace
 
 from softafm.checks.callers import warn_caller
 from softafm.checks.kinds import refuse_other
-from softafm.checks.validate import tabor_of, tolerance_of
+from softafm.checks.validate import check_tabor, check_tolerance
 from softafm.contact import Contact
 from softafm.errors import AccuracyWarning
 from softafm.instrument.cantilever import Cantilever
 from softafm.instrument.motion import check_motion, find_setpoint, is_steady, list_doubts
-from softafm.progress import reporting
+from softafm.progress import make_reporter
 from softafm.solvers.energy import Energy
 from softafm.solvers.solver import check_history, check_solver
 
@@ -19,7 +19,7 @@ def carry(contact, motion, solver, tolerance, profiles, progress, **options):
 
     ``solver`` None stands for ``Energy()``. ``options`` go to the solver.
     """
-    tolerance, solver = tolerance_of(tolerance), solver_of(solver)
+    tolerance, solver = check_tolerance(tolerance), choose_solver(solver)
     check_motion(motion)
     refuse_start_inside(contact, motion)
     if is_steady(motion):
@@ -29,7 +29,7 @@ def carry(contact, motion, solver, tolerance, profiles, progress, **options):
     doubts = (*doubt_window(contact, motion), *doubted)
     for warning in doubts:
         warn_caller(warning)
-    with reporting(progress) as report:
+    with make_reporter(progress) as report:
         history = solver.solve(
             contact, motion, tolerance=tolerance, profiles=profiles, progress=report, **options
         )
@@ -37,7 +37,7 @@ def carry(contact, motion, solver, tolerance, profiles, progress, **options):
     return solver, tolerance, replace(history, warnings=(*doubts, *history.warnings))
 
 
-def solver_of(solver):
+def choose_solver(solver):
     """Return the solver of a run, ``Energy()`` for None; ValueError if it is not one."""
     if solver is None:
         return Energy()
@@ -51,7 +51,7 @@ def regularise_contact(contact: Contact, tabor: float | None) -> Contact:
     ValueError if it is none, or the number is out of range.
     """
     refuse_other("contact", contact, Contact, "a softafm.Contact")
-    return contact if tabor is None else contact.regularised(tabor_of("regularise", tabor))
+    return contact if tabor is None else contact.regularised(check_tabor("regularise", tabor))
 
 
 def doubt_window(contact, motion) -> tuple[AccuracyWarning, ...]:

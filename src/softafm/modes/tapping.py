@@ -96,13 +96,13 @@ def observe_taps(contact: Contact, motion: Sine, history: History) -> dict[str, 
         "force_min": history.extreme(force, -1, start),
         "force_min_approach": history.extreme(force, -1, start, start + period / 2),
         "force_mean": history.integrate(force, np.ones_like, start, stop) / period,
-        "contact_time": time_below(history.time[last], axis_gap[last], contact.edge_gap),
+        "contact_time": measure_time_below(history.time[last], axis_gap[last], contact.edge_gap),
         "indentation": max(0.0, -history.axis_deformation[last].min()),
         "viscous_loss": history.integrate(history.viscous_power, np.ones_like, start, stop),
     }
 
 
-def time_below(time, values, level) -> float:
+def measure_time_below(time, values, level) -> float:
     """Time during which ``values``, linear between instants, stay below ``level``."""
     below = values < level
     a, b = values[:-1], values[1:]

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from softafm.checks.refusals import nearest, one_of, shown
+from softafm.checks.refusals import join_with_or, show, suggest
 from softafm.results.content import (
     BRANCHES,
     FORMAT,
@@ -21,7 +21,7 @@ from softafm.results.content import (
     SAMPLES,
     UNNUMBERED,
     Needed,
-    unit_of,
+    find_unit,
 )
 
 Variables = Mapping[str, tuple[tuple[str, ...], np.ndarray, Mapping[str, Any]]]
@@ -41,7 +41,7 @@ def refuse_unusable(attributes: Mapping[str, Any], variables: Variables) -> None
     mode = attributes.get("mode")
     if not isinstance(mode, str) or mode not in NEEDED:
         modes_first = sorted(NEEDED, key=lambda known: known in MAPS)
-        raise ValueError(f"attribute mode = {shown(mode)}: {nearest(mode, modes_first)}")
+        raise ValueError(f"attribute mode = {show(mode)}: {suggest(mode, modes_first)}")
     needed = NEEDED[mode]
     _refuse_experiment(mode, needed, attributes)
     _refuse_attributes(needed, attributes)
@@ -59,7 +59,7 @@ def refuse_unusable(attributes: Mapping[str, Any], variables: Variables) -> None
             raise ValueError(f"variable '{name}' is missing, which a result of mode '{mode}' holds")
         _refuse_variable(name, dimensions, variables, gaps=needed.gaps and name not in along)
     for name in variables:
-        if name not in wanted and unit_of(name) is not None:
+        if name not in wanted and find_unit(name) is not None:
             _refuse_values(name, variables[name][1], gaps=needed.gaps)
 
 
@@ -67,7 +67,7 @@ def _refuse_experiment(mode: str, needed: Needed, attributes: Mapping[str, Any])
     experiment = _parse_table("experiment", attributes)
     if experiment.get("mode") != mode:
         raise ValueError(
-            f"attribute experiment: is one of mode {shown(experiment.get('mode'))}, but the result "
+            f"attribute experiment: is one of mode {show(experiment.get('mode'))}, but the result "
             f"says mode = {mode!r}"
         )
     for part in ("tip", "sample", "surface", needed.described):
@@ -77,7 +77,7 @@ def _refuse_experiment(mode: str, needed: Needed, attributes: Mapping[str, Any])
         value = experiment["motion"].get(name)
         if not _is_number(value) or not 0 < value < _LARGEST_BY_DEFAULT:
             raise ValueError(
-                f"attribute experiment: motion.{name} = {shown(value)}: must be a number in "
+                f"attribute experiment: motion.{name} = {show(value)}: must be a number in "
                 f"{unit}, greater than 0"
             )
 
@@ -87,10 +87,10 @@ def _refuse_attributes(needed: Needed, attributes: Mapping[str, Any]) -> None:
     for name in (*required, *(each for each in _NUMBERS if each in attributes)):
         value: Any = attributes.get(name)
         if not _is_number(value) or abs(value) > _LARGEST_BY_DEFAULT:
-            raise ValueError(f"attribute {name} = {shown(value)}: must be a number")
+            raise ValueError(f"attribute {name} = {show(value)}: must be a number")
     for name in _TEXTS:
         if not isinstance(attributes.get(name, ""), str):
-            raise ValueError(f"attribute {name} = {shown(attributes[name])}: must be text")
+            raise ValueError(f"attribute {name} = {show(attributes[name])}: must be text")
     differences = _parse_table("check_differences", attributes, "{}")
     if not all(map(_is_number, differences.values())):
         raise ValueError("attribute check_differences: must hold numbers by name")
@@ -112,11 +112,11 @@ def _parse(name: str, attributes: Mapping[str, Any], default: str | None) -> Any
     if text is None:
         raise ValueError(f"attribute {name}: missing")
     if not isinstance(text, str):
-        raise ValueError(f"attribute {name} = {shown(text)}: must be text, as JSON")
+        raise ValueError(f"attribute {name} = {show(text)}: must be text, as JSON")
     try:
         return json.loads(text)
     except (ValueError, RecursionError):
-        raise ValueError(f"attribute {name} = {shown(text)}: cannot be read as JSON") from None
+        raise ValueError(f"attribute {name} = {show(text)}: cannot be read as JSON") from None
 
 
 def _is_number(value: Any) -> bool:
@@ -128,10 +128,10 @@ def _refuse_words(name: str, described: Mapping[str, Any]) -> None:
     for key in ("units", "long_name"):
         word = described.get(key, "")
         if not isinstance(word, str) or not word.isprintable():
-            raise ValueError(f"variable '{name}': its {key} = {shown(word)}: must be a word")
-    units, known = described.get("units"), unit_of(name)
+            raise ValueError(f"variable '{name}': its {key} = {show(word)}: must be a word")
+    units, known = described.get("units"), find_unit(name)
     if known is not None and units != known:
-        raise ValueError(f"variable '{name}' has the unit {shown(units)}: must be {known!r}")
+        raise ValueError(f"variable '{name}' has the unit {show(units)}: must be {known!r}")
 
 
 def _refuse_shape(name: str, dimensions, values: np.ndarray, variables: Variables) -> None:
@@ -159,7 +159,7 @@ def _refuse_variable(
         raise ValueError(f"variable '{name}' has {values.size} values: {wanted}")
     if name == "branch" and dimensions == ("branch",):
         if sorted(map(str, values)) != sorted(BRANCHES):
-            raise ValueError(f"variable 'branch' must hold {one_of(BRANCHES)}, each once")
+            raise ValueError(f"variable 'branch' must hold {join_with_or(BRANCHES)}, each once")
         return
     _refuse_values(name, values, gaps=gaps)
     if name in RISING and not (np.diff(values) > 0).all():
@@ -169,8 +169,8 @@ def _refuse_variable(
 def _refuse_values(name: str, values: np.ndarray, *, gaps: bool) -> None:
     """Refuse values that are no numbers, or larger than what the unit of a known name allows."""
     if values.dtype.kind not in "fiu":
-        raise ValueError(f"variable '{name}' holds {shown(values.dtype.name)}: must hold numbers")
-    units = unit_of(name)
+        raise ValueError(f"variable '{name}' holds {show(values.dtype.name)}: must hold numbers")
+    units = find_unit(name)
     largest = _LARGEST.get(str(units), _LARGEST_BY_DEFAULT)
     numbers = values[~np.isnan(values)] if gaps else values
     wrong = ~(np.abs(numbers) <= largest)

@@ -166,7 +166,7 @@ def declare(mode: str, needed: Needed, observed: Mapping[str, Observable]) -> No
         If the name of an observable means something else in results.
     """
     for name, each in observed.items():
-        unit = unit_of(name)
+        unit = find_unit(name)
         if unit is None:
             VARIABLES[name] = each.units, each.long_name
         elif (each.units, each.long_name) != _meaning(name):
@@ -177,7 +177,7 @@ def declare(mode: str, needed: Needed, observed: Mapping[str, Observable]) -> No
     NEEDED[mode] = needed
 
 
-def variable(name: str, dims, values) -> "Variable":
+def make_variable(name: str, dims, values) -> "Variable":
     """Return values under a known name, with its unit and long name as attributes.
 
     A name may be prefixed by ``approach_`` or ``retract_``.
@@ -191,19 +191,19 @@ def variable(name: str, dims, values) -> "Variable":
     return Variable(dims, array, {"units": units, "long_name": long_name}, fastpath=True)
 
 
-def unit_of(name: str) -> str | None:
+def find_unit(name: str) -> str | None:
     """Return the unit of a variable; None if no mode returns one of this name."""
     if name in VARIABLES:
         return VARIABLES[name][0]
     direction, _, rest = name.partition("_")
-    return _swept(name)[0] if direction in DIRECTIONS and rest in VARIABLES else None
+    return _describe_recorded(name)[0] if direction in DIRECTIONS and rest in VARIABLES else None
 
 
 def _meaning(name: str) -> tuple[str, str]:
-    return VARIABLES[name] if name in VARIABLES else _swept(name)
+    return VARIABLES[name] if name in VARIABLES else _describe_recorded(name)
 
 
-def _swept(name: str) -> tuple[str, str]:
+def _describe_recorded(name: str) -> tuple[str, str]:
     """Return unit and long name of what is recorded in a sweep of the height."""
     direction, _, rest = name.partition("_")
     units, long_name = VARIABLES[rest]

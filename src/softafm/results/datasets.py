@@ -15,7 +15,7 @@ import numpy as np
 
 from softafm.checks.kinds import refuse_non_dataset
 from softafm.checks.paths import explain_no_file
-from softafm.results.content import FORMAT, HISTORY, LARGEST, PROFILES, variable
+from softafm.results.content import FORMAT, HISTORY, LARGEST, PROFILES, make_variable
 from softafm.results.netcdf import make_file_content
 from softafm.solvers.history import History
 from softafm.version import __version__
@@ -93,7 +93,7 @@ def history_variables(contact, history: History) -> tuple[dict, dict]:
     return data, coordinates
 
 
-def dataset(
+def assemble_history(
     mode: str, contact, parts: Mapping[str, Any], solver, tolerance: float, data, coordinates,
     warnings, diagnostics,
 ) -> "Dataset":  # fmt: skip
@@ -103,7 +103,7 @@ def dataset(
     """
 
     def known(arrays):
-        return {name: variable(name, dims, values) for name, (dims, values) in arrays.items()}
+        return {name: make_variable(name, dims, values) for name, (dims, values) in arrays.items()}
 
     attributes = _collect_provenance(mode, contact, parts, solver, tolerance, warnings, diagnostics)
     return _assemble(known(data), known(coordinates), attributes)

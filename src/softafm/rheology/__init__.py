@@ -6,7 +6,7 @@ equation 4). What the contact problem needs of it is for the body under the tip 
 """
 
 from softafm.rheology.compliance import CreepCompliance
-from softafm.rheology.dma import dma_misfit
+from softafm.rheology.dma import measure_misfit
 from softafm.rheology.dma_table import read_dma
 from softafm.rheology.elastic import Elastic
 from softafm.rheology.fractional import FractionalStandardLinearSolid
@@ -29,7 +29,7 @@ __all__ = [
     "Solid",
     "StandardLinearSolid",
     "chain_to_prony",
-    "dma_misfit",
+    "measure_misfit",
     "prony_to_chain",
     "read_dma",
 ]

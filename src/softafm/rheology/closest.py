@@ -21,13 +21,13 @@ _OFF, _STANDARD_ERRORS = 0.1, 3
 how many standard errors of this mean more."""
 
 
-def ends(frequency: np.ndarray, storage: np.ndarray, loss: np.ndarray) -> tuple[float, float]:
+def find_ends(frequency: np.ndarray, storage: np.ndarray, loss: np.ndarray) -> tuple[float, float]:
     """Return the shortest and the longest relaxation time, s, that moduli can tell of."""
     fastest = min(_FASTEST, _STIFFENED * storage[-1] / loss[-1])
     return fastest / (2 * pi * frequency[-1]), _SLOWEST / (2 * pi * frequency[0])
 
 
-def columns(
+def make_columns(
     times: np.ndarray, frequency: np.ndarray, storage: np.ndarray, loss: np.ndarray
 ) -> np.ndarray:
     """Return what unit moduli add to storage and, below, loss, relative to what was measured.
@@ -39,7 +39,7 @@ def columns(
     return np.vstack([terms.real / storage[:, None], terms.imag / loss[:, None]])
 
 
-def delays(
+def differentiate(
     times: np.ndarray, frequency: np.ndarray, storage: np.ndarray, loss: np.ndarray
 ) -> np.ndarray:
     """Return the derivatives of such columns, without that of E_inf, by ln λ; shape (2n, m)."""
@@ -48,7 +48,7 @@ def delays(
     return np.vstack([slopes.real / storage[:, None], slopes.imag / loss[:, None]])
 
 
-def closest(rows: np.ndarray) -> np.ndarray:
+def fit_closest(rows: np.ndarray) -> np.ndarray:
     """Return the moduli (Pa), none negative, of the least relative misfit of such columns."""
     from scipy.optimize import nnls
 
@@ -57,14 +57,14 @@ def closest(rows: np.ndarray) -> np.ndarray:
     return moduli / norms
 
 
-def closest_of_all(
+def fit_closest_of_all(
     frequency: np.ndarray, storage: np.ndarray, loss: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Return relaxation times (s), E_inf and moduli (Pa), and the fit relative to the data (2n)."""
-    first, last = ends(frequency, storage, loss)
+    first, last = find_ends(frequency, storage, loss)
     times = np.geomspace(first, last, ceil(_DENSE * log10(last / first)) + 1)
-    rows = columns(times, frequency, storage, loss)
-    moduli = closest(rows)
+    rows = make_columns(times, frequency, storage, loss)
+    moduli = fit_closest(rows)
     return times, moduli, rows @ moduli
 
 
@@ -75,9 +75,9 @@ def refuse_impossible(frequency: np.ndarray, storage: np.ndarray, loss: np.ndarr
     average, and by more than three standard errors of that mean. Noise is what is left in second
     differences of the misfit.
     """
-    off = np.log(np.split(closest_of_all(frequency, storage, loss)[2], 2))
+    off = np.log(np.split(fit_closest_of_all(frequency, storage, loss)[2], 2))
     place = np.log10(frequency)
-    averages = [_average(place, each) for each in off]
+    averages = [_average_squares(place, each) for each in off]
     excess = [np.abs(mean) - _OFF - _STANDARD_ERRORS * error for mean, error in averages]
     if np.max(excess) <= 0:
         return
@@ -87,11 +87,11 @@ def refuse_impossible(frequency: np.ndarray, storage: np.ndarray, loss: np.ndarr
     raise ValueError(
         f"{name} = {values[i]:.4g} Pa at {frequency[i]:.4g} Hz: no linear passive solid has this "
         f"beside the other moduli, the closest has {values[i] * np.exp(off[which, i]):.2g} Pa: "
-        + _contradiction(frequency, storage)
+        + _describe_contradiction(frequency, storage)
     )
 
 
-def _contradiction(frequency: np.ndarray, storage: np.ndarray) -> str:
+def _describe_contradiction(frequency: np.ndarray, storage: np.ndarray) -> str:
     """Tell which law of passive solids is broken."""
     share = storage / np.maximum.accumulate(storage)
     last = int(np.argmin(share))
@@ -104,16 +104,16 @@ def _contradiction(frequency: np.ndarray, storage: np.ndarray) -> str:
     )
 
 
-def _average(place: np.ndarray, values: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+def _average_squares(place: np.ndarray, values: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Return the means over a decade around each place, and their standard errors."""
-    mean, count = _means(place, values, place, 0.5)
+    mean, count = _average_decades(place, values, place, 0.5)
     if values.size < 3:
         return mean, np.zeros(values.size)
-    scatter, _ = _means(place[1:-1], np.diff(values, 2) ** 2 / 6, place, 1.0)
+    scatter, _ = _average_decades(place[1:-1], np.diff(values, 2) ** 2 / 6, place, 1.0)
     return mean, np.sqrt(scatter / count)
 
 
-def _means(
+def _average_decades(
     place: np.ndarray, values: np.ndarray, centres: np.ndarray, reach: float
 ) -> tuple[np.ndarray, np.ndarray]:
     """Return the means of values within reach of some centres, of all if none is, and how many."""

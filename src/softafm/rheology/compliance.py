@@ -6,7 +6,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
-from softafm.checks.validate import positive
+from softafm.checks.validate import check_positive
 
 LONG = 1e6
 """Retardation time of the element that stands for steady flow, in durations of the experiment."""
@@ -61,7 +61,7 @@ class CreepCompliance(NamedTuple):
         """
         if self.fluidity == 0:
             return self
-        time = LONG * positive("duration", duration, "s")
+        time = LONG * check_positive("duration", duration, "s")
         return CreepCompliance(
             self.instantaneous,
             np.append(self.elements, self.fluidity * time),

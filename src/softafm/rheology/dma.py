@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from softafm.errors import AccuracyWarning
-from softafm.rheology.lists import samples
+from softafm.rheology.lists import check_points
 
 _MOST_POINTS, _MOST_DECADES = 2000, 30
 """What can be fitted in seconds."""
@@ -17,24 +17,24 @@ _REPEATED = 1.2
 """Largest ratio of storage moduli measured twice at one frequency."""
 
 
-def dma_misfit(
+def measure_misfit(
     sample: Any, frequency: ArrayLike, storage: ArrayLike, loss: ArrayLike
 ) -> tuple[float, float]:
     """Return the largest and the root mean square relative misfit of a sample to measured moduli.
 
     Storage and loss modulus (Pa, at ``frequency`` in Hz) are each compared with their own value.
     """
-    misfit = _misfit(sample, *sort_moduli(frequency, storage, loss))
+    misfit = _measure_misfit(sample, *sort_moduli(frequency, storage, loss))
     return float(np.max(np.abs(misfit))), float(np.sqrt(np.mean(misfit**2)))
 
 
 def warn_of_misfit(sample: Any, frequency: ArrayLike, storage: ArrayLike, loss: ArrayLike) -> None:
     """Warn, on behalf of what called the caller, of a sample that is far from what was measured."""
     data = sort_moduli(frequency, storage, loss)
-    largest, rms = dma_misfit(sample, *data)
+    largest, rms = measure_misfit(sample, *data)
     if largest <= _POOR:
         return
-    which, i = divmod(int(np.argmax(np.abs(_misfit(sample, *data)))), data[0].size)
+    which, i = divmod(int(np.argmax(np.abs(_measure_misfit(sample, *data)))), data[0].size)
     name, value = ("storage", "loss")[which], data[1 + which][i]
     warnings.warn(
         f"the sample differs from the measured moduli by up to {100 * largest:.2g} %, in the "
@@ -45,7 +45,7 @@ def warn_of_misfit(sample: Any, frequency: ArrayLike, storage: ArrayLike, loss: 
     )
 
 
-def _misfit(
+def _measure_misfit(
     sample: Any, frequency: np.ndarray, storage: np.ndarray, loss: np.ndarray
 ) -> np.ndarray:
     """Return the relative misfit of storage and loss modulus, shape (2, n)."""
@@ -67,12 +67,12 @@ def sort_moduli(
         if frequencies are all equal or span over 30 decades, or storage moduli of one frequency
         differ by more than 20 %.
     """
-    frequency = samples("frequency", frequency, "Hz")
+    frequency = check_points("frequency", frequency, "Hz")
     if frequency.ndim != 1 or not 2 <= frequency.size <= _MOST_POINTS:
         raise ValueError(
             f"frequency has shape {frequency.shape}: must be a list of 2 to {_MOST_POINTS} numbers"
         )
-    moduli = samples("storage", storage, "Pa"), samples("loss", loss, "Pa")
+    moduli = check_points("storage", storage, "Pa"), check_points("loss", loss, "Pa")
     for name, values in zip(("storage", "loss"), moduli, strict=True):
         if values.shape != frequency.shape:
             raise ValueError(

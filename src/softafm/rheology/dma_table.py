@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from softafm.checks.validate import poisson_ratio
+from softafm.checks.validate import check_poisson_ratio
 from softafm.files.tables import Column, Table, quote
 from softafm.rheology.closest import refuse_impossible
 from softafm.rheology.dma import sort_moduli
@@ -46,7 +46,7 @@ class DynamicModuli(NamedTuple):
 
     def young(self, poisson: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Return frequency, and Young's moduli: E = 2(1 + ν)G."""
-        factor = 2 * (1 + poisson_ratio(poisson)) if self.shear else 1.0
+        factor = 2 * (1 + check_poisson_ratio(poisson)) if self.shear else 1.0
         return self.frequency, factor * self.storage, factor * self.loss
 
 
@@ -88,7 +88,7 @@ def read_moduli(path: str | Path) -> DynamicModuli:
     """Read moduli in shear, or Young's, as ``read_dma``."""
     table = Table(path, EXAMPLE)
     named = {
-        letter: {word: table.find(*_names(letter, word)) for word in _MARKS} for letter in "EG"
+        letter: {word: table.find(*_find_names(letter, word)) for word in _MARKS} for letter in "EG"
     }
     unsaid = {word: table.find(word, f"{word} modulus") for word in _MARKS}
     shear = any(named["G"].values()) and not any(named["E"].values())
@@ -96,9 +96,9 @@ def read_moduli(path: str | Path) -> DynamicModuli:
         columns = named[letter]
         if shear == (letter == "G"):
             columns = {word: column or unsaid[word] for word, column in columns.items()}
-        moduli = _storage_and_loss(table, columns)
+        moduli = _read_storage_and_loss(table, columns)
         if moduli:
-            data = sort_moduli(_frequency(table), *moduli)
+            data = sort_moduli(_read_frequency(table), *moduli)
             refuse_impossible(*data)
             return DynamicModuli(*data, letter == "G")
     if not any([*unsaid.values(), *named["E"].values(), *named["G"].values()]):
@@ -109,7 +109,7 @@ def read_moduli(path: str | Path) -> DynamicModuli:
     )
 
 
-def _names(letter: str, word: str) -> tuple[str, ...]:
+def _find_names(letter: str, word: str) -> tuple[str, ...]:
     """Return what a modulus is called that is said to be Young's (E) or in shear (G)."""
     symbol, name = f"{letter}{_MARKS[word]}", f"{word} modulus"
     kinds = ("shear",) if letter == "G" else ("tensile", "Young's")
@@ -120,14 +120,14 @@ def _names(letter: str, word: str) -> tuple[str, ...]:
     )
 
 
-def _storage_and_loss(
+def _read_storage_and_loss(
     table: Table, columns: Mapping[str, Column | None]
 ) -> tuple[np.ndarray, np.ndarray] | None:
     """Return storage and loss modulus, Pa, of the columns of one kind, if they suffice."""
     moduli = {word: table.in_si(c, MODULUS) for word, c in columns.items() if c is not None}
     if {"storage", "loss"} <= moduli.keys():
         return moduli["storage"], moduli["loss"]
-    tangent = _tangent(table) if moduli else None
+    tangent = _read_tangent(table) if moduli else None
     if tangent is None:
         return None
     if "storage" in moduli:
@@ -138,7 +138,7 @@ def _storage_and_loss(
     return storage, tangent * storage
 
 
-def _tangent(table: Table) -> np.ndarray | None:
+def _read_tangent(table: Table) -> np.ndarray | None:
     """Return tan δ, if the table has it or the angle."""
     column = table.find(*_TANGENT)
     if column is not None:
@@ -165,7 +165,7 @@ def _refuse(
         raise ValueError(f"{table.place(row)}: {name} = {values[row]:g}{unit}: must be {words}")
 
 
-def _frequency(table: Table) -> np.ndarray:
+def _read_frequency(table: Table) -> np.ndarray:
     """Return frequencies in Hz; what may be in rad/s or in Hz is refused."""
     column = table.find(*_FREQUENCY)
     angular = table.find(*_ANGULAR) if column is None else None

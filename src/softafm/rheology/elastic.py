@@ -5,7 +5,7 @@ from typing import ClassVar
 
 import numpy as np
 
-from softafm.checks.validate import poisson_ratio, positive
+from softafm.checks.validate import check_poisson_ratio, check_positive
 from softafm.rheology.compliance import CreepCompliance
 from softafm.rheology.solid import Solid
 
@@ -32,8 +32,8 @@ class Elastic(Solid):
     poisson: float
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "E", positive("E", self.E, "Pa"))
-        object.__setattr__(self, "poisson", poisson_ratio(self.poisson))
+        object.__setattr__(self, "E", check_positive("E", self.E, "Pa"))
+        object.__setattr__(self, "poisson", check_poisson_ratio(self.poisson))
 
     @property
     def compliance(self) -> CreepCompliance:

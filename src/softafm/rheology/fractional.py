@@ -6,10 +6,10 @@ from typing import ClassVar, NamedTuple
 
 import numpy as np
 
-from softafm.checks.validate import poisson_ratio, positive
-from softafm.rheology.lists import window_of
-from softafm.rheology.represented import Represented, exponent_of
-from softafm.rheology.series import Response, error_of
+from softafm.checks.validate import check_poisson_ratio, check_positive
+from softafm.rheology.lists import check_window
+from softafm.rheology.represented import Represented, check_exponent
+from softafm.rheology.series import Response, check_error
 
 
 @dataclass(frozen=True)
@@ -59,13 +59,13 @@ class FractionalStandardLinearSolid(Represented):
     error: float = 0.01
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "E0", positive("E0", self.E0, "Pa"))
-        object.__setattr__(self, "E_inf", positive("E_inf", self.E_inf, "Pa"))
-        object.__setattr__(self, "creep_time", positive("creep_time", self.creep_time, "s"))
-        object.__setattr__(self, "exponent", exponent_of(self.exponent))
-        object.__setattr__(self, "window", window_of(self.window))
-        object.__setattr__(self, "poisson", poisson_ratio(self.poisson))
-        object.__setattr__(self, "error", error_of(self.error))
+        object.__setattr__(self, "E0", check_positive("E0", self.E0, "Pa"))
+        object.__setattr__(self, "E_inf", check_positive("E_inf", self.E_inf, "Pa"))
+        object.__setattr__(self, "creep_time", check_positive("creep_time", self.creep_time, "s"))
+        object.__setattr__(self, "exponent", check_exponent(self.exponent))
+        object.__setattr__(self, "window", check_window(self.window))
+        object.__setattr__(self, "poisson", check_poisson_ratio(self.poisson))
+        object.__setattr__(self, "error", check_error(self.error))
         if self.E_inf > self.E0:
             raise ValueError(
                 f"E_inf = {self.E_inf:g} Pa: must be at most E0 = {self.E0:g} Pa "

@@ -33,10 +33,10 @@ def prony_to_chain(
     s J(s) · s E(s) = 1 (Gross 1953). Zeros: Σ E_k λ_k/(τ − λ_k) = E_inf; weights:
     J_m = 1/(τ_m Σ E_k λ_k/(τ_m − λ_k)²).
     """
-    moduli, poles = _merged(moduli, relaxation_times)
+    moduli, poles = _merge(moduli, relaxation_times)
     instantaneous = 1 / (E_inf + float(np.sum(moduli)))
     weights = moduli * poles
-    times, distances = _zeros(poles, weights, E_inf)
+    times, distances = _find_zeros(poles, weights, E_inf)
     compliances = 1 / (times * np.sum(weights / distances / distances, axis=1))
     fluidity = 1 / float(np.sum(weights)) if E_inf == 0 else 0.0
     return instantaneous, compliances, times, fluidity
@@ -69,29 +69,31 @@ def chain_to_prony(
     As ``prony_to_chain``. Zeros: J_g/λ + Σ J_m/(λ − τ_m) = φ; weights:
     E_k = 1/(λ_k² (J_g/λ_k² + Σ J_m/(λ_k − τ_m)²)).
     """
-    compliances, times = _merged(compliances, retardation_times)
+    compliances, times = _merge(compliances, retardation_times)
     poles, weights = np.append(0.0, times), np.append(instantaneous, compliances)
-    zeros, distances = _zeros(poles, weights, fluidity)
+    zeros, distances = _find_zeros(poles, weights, fluidity)
     moduli = 1 / np.sum(weights * (zeros[:, None] / distances) ** 2, axis=1)
     E_inf = 0.0 if fluidity > 0 else 1 / float(np.sum(weights))
     return E_inf, moduli, zeros
 
 
-def _merged(weights: ArrayLike, times: ArrayLike) -> tuple[np.ndarray, np.ndarray]:
+def _merge(weights: ArrayLike, times: ArrayLike) -> tuple[np.ndarray, np.ndarray]:
     """Return the terms by rising time, equal times added and zero weights left out."""
     weights, times = np.asarray(weights, float), np.asarray(times, float)
     times, group = np.unique(times[weights > 0], return_inverse=True)
     return np.bincount(group, weights[weights > 0], times.size), times
 
 
-def _zeros(poles: np.ndarray, weights: np.ndarray, level: float) -> tuple[np.ndarray, np.ndarray]:
+def _find_zeros(
+    poles: np.ndarray, weights: np.ndarray, level: float
+) -> tuple[np.ndarray, np.ndarray]:
     """Return the zeros x of Σ w_i/(x − p_i) − level, and x − p_i, of shape (zeros, poles)."""
     count = poles.size
     if count == 0:
         return np.zeros(0), np.zeros((0, 0))
     left = np.arange(count - 1)
     half = np.diff(poles) / 2
-    above, below = _halves(poles[left, None] - poles + half[:, None], weights, level)
+    above, below = _halve(poles[left, None] - poles + half[:, None], weights, level)
     # +1: the zero lies right of its nearest pole, by at most half a gap; -1: left of it.
     side = np.where(above > below, -1.0, 1.0)
     nearest = np.where(above > below, left + 1, left)
@@ -106,7 +108,7 @@ def _zeros(poles: np.ndarray, weights: np.ndarray, level: float) -> tuple[np.nda
     y = (low + high) / 2
     for _ in range(200):
         distances = apart + (side * half * np.exp(y))[:, None]
-        above, below = _halves(distances, weights, level)
+        above, below = _halve(distances, weights, level)
         excess = side * np.log(above / below)
         low, high = np.where(excess >= 0, y, low), np.where(excess <= 0, y, high)
         terms = weights / distances / distances
@@ -124,7 +126,7 @@ def _zeros(poles: np.ndarray, weights: np.ndarray, level: float) -> tuple[np.nda
     return poles[nearest] + side * half * np.exp(y), distances
 
 
-def _halves(
+def _halve(
     distances: np.ndarray, weights: np.ndarray, level: float
 ) -> tuple[np.ndarray, np.ndarray]:
     """Return the positive and the negative terms of Σ w_i/(x − p_i) − level, both as sums > 0."""

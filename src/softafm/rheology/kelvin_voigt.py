@@ -5,9 +5,9 @@ from typing import ClassVar
 
 import numpy as np
 
-from softafm.checks.validate import poisson_ratio, positive
+from softafm.checks.validate import check_poisson_ratio, check_positive
 from softafm.rheology.compliance import CreepCompliance
-from softafm.rheology.lists import as_many, positives
+from softafm.rheology.lists import check_count, check_positives
 from softafm.rheology.solid import Solid
 
 STIFF = 1e6
@@ -44,9 +44,9 @@ class KelvinVoigt(Solid):
     poisson: float
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "E", positive("E", self.E, "Pa"))
-        object.__setattr__(self, "creep_time", positive("creep_time", self.creep_time, "s"))
-        object.__setattr__(self, "poisson", poisson_ratio(self.poisson))
+        object.__setattr__(self, "E", check_positive("E", self.E, "Pa"))
+        object.__setattr__(self, "creep_time", check_positive("creep_time", self.creep_time, "s"))
+        object.__setattr__(self, "poisson", check_poisson_ratio(self.poisson))
 
     @classmethod
     def from_viscosity(cls, E: float, viscosity: float, poisson: float) -> "KelvinVoigt":
@@ -57,7 +57,7 @@ class KelvinVoigt(Solid):
         viscosity
             Viscosity η in uniaxial extension, Pa s.
         """
-        E, viscosity = positive("E", E, "Pa"), positive("viscosity", viscosity, "Pa s")
+        E, viscosity = check_positive("E", E, "Pa"), check_positive("viscosity", viscosity, "Pa s")
         return cls(E, viscosity / E, poisson)
 
     @classmethod
@@ -71,8 +71,8 @@ class KelvinVoigt(Solid):
         viscosity
             Viscosity η in shear, Pa s.
         """
-        G, viscosity = positive("G", G, "Pa"), positive("viscosity", viscosity, "Pa s")
-        return cls(2 * (1 + poisson_ratio(poisson)) * G, viscosity / G, poisson)
+        G, viscosity = check_positive("G", G, "Pa"), check_positive("viscosity", viscosity, "Pa s")
+        return cls(2 * (1 + check_poisson_ratio(poisson)) * G, viscosity / G, poisson)
 
     @property
     def compliance(self) -> CreepCompliance:
@@ -109,13 +109,13 @@ class GeneralizedKelvinVoigt(Solid):
     poisson: float
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "E0", positive("E0", self.E0, "Pa"))
-        object.__setattr__(self, "poisson", poisson_ratio(self.poisson))
-        compliances = positives("compliances", self.compliances, "1/Pa")
-        times = positives("retardation_times", self.retardation_times, "s")
+        object.__setattr__(self, "E0", check_positive("E0", self.E0, "Pa"))
+        object.__setattr__(self, "poisson", check_poisson_ratio(self.poisson))
+        compliances = check_positives("compliances", self.compliances, "1/Pa")
+        times = check_positives("retardation_times", self.retardation_times, "s")
         object.__setattr__(self, "compliances", compliances)
         object.__setattr__(self, "retardation_times", times)
-        as_many("retardation_times", times, "compliances", compliances)
+        check_count("retardation_times", times, "compliances", compliances)
 
     @property
     def compliance(self) -> CreepCompliance:

@@ -4,12 +4,12 @@ from typing import Any
 
 import numpy as np
 
-from softafm.checks.validate import numbers, refuse_masked
+from softafm.checks.validate import check_numbers, refuse_masked
 
 
-def positives(name: str, values: Any, unit: str, *, zeros: bool = False) -> tuple[float, ...]:
+def check_positives(name: str, values: Any, unit: str, *, zeros: bool = False) -> tuple[float, ...]:
     """Return the values as a tuple of floats above zero, or not below it if ``zeros``."""
-    checked = numbers(name, values, unit)
+    checked = check_numbers(name, values, unit)
     for index, number in enumerate(checked):
         entry = f"{name}[{index}]"
         if zeros and number < 0:
@@ -19,7 +19,9 @@ def positives(name: str, values: Any, unit: str, *, zeros: bool = False) -> tupl
     return checked
 
 
-def as_many(name: str, values: tuple[Any, ...], as_name: str, as_values: tuple[Any, ...]) -> None:
+def check_count(
+    name: str, values: tuple[Any, ...], as_name: str, as_values: tuple[Any, ...]
+) -> None:
     """Refuse two lists of different lengths."""
     if len(values) != len(as_values):
         raise ValueError(
@@ -27,7 +29,7 @@ def as_many(name: str, values: tuple[Any, ...], as_name: str, as_values: tuple[A
         )
 
 
-def samples(name: str, values: Any, unit: str, least: float | None = None) -> np.ndarray:
+def check_points(name: str, values: Any, unit: str, least: float | None = None) -> np.ndarray:
     """Return numbers as an array of floats if all are above zero, or at least ``least``."""
     refuse_masked(name, values)
     try:
@@ -43,9 +45,9 @@ def samples(name: str, values: Any, unit: str, least: float | None = None) -> np
     return array
 
 
-def window_of(values: Any) -> tuple[float, float]:
+def check_window(values: Any) -> tuple[float, float]:
     """Return the shortest and the longest time of a window (s)."""
-    times = positives("window", values, "s")
+    times = check_positives("window", values, "s")
     if len(times) != 2 or not times[0] < times[1]:
         shown = ", ".join(f"{time:g}" for time in times)
         raise ValueError(

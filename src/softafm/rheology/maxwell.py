@@ -9,12 +9,12 @@ from typing import ClassVar
 import numpy as np
 from numpy.typing import ArrayLike
 
-from softafm.checks.validate import finite, poisson_ratio, positive
+from softafm.checks.validate import check_finite, check_poisson_ratio, check_positive
 from softafm.errors import AccuracyWarning
 from softafm.rheology.compliance import CreepCompliance
-from softafm.rheology.dma import dma_misfit, warn_of_misfit
+from softafm.rheology.dma import measure_misfit, warn_of_misfit
 from softafm.rheology.interconversion import prony_to_chain
-from softafm.rheology.lists import as_many, positives
+from softafm.rheology.lists import check_count, check_positives
 from softafm.rheology.prony_fit import fit_prony
 from softafm.rheology.solid import Solid
 
@@ -48,10 +48,10 @@ class Maxwell(Solid):
     poisson: float
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "E0", positive("E0", self.E0, "Pa"))
-        time = positive("relaxation_time", self.relaxation_time, "s")
+        object.__setattr__(self, "E0", check_positive("E0", self.E0, "Pa"))
+        time = check_positive("relaxation_time", self.relaxation_time, "s")
         object.__setattr__(self, "relaxation_time", time)
-        object.__setattr__(self, "poisson", poisson_ratio(self.poisson))
+        object.__setattr__(self, "poisson", check_poisson_ratio(self.poisson))
 
     @classmethod
     def from_viscosity(cls, E0: float, viscosity: float, poisson: float) -> "Maxwell":
@@ -63,7 +63,10 @@ class Maxwell(Solid):
             Viscosity η_E in uniaxial *extension*, Pa s: 2(1 + ν) times that in shear, Trouton's 3η
             at ν = 0.5.
         """
-        E0, viscosity = positive("E0", E0, "Pa"), positive("viscosity", viscosity, "Pa s")
+        E0, viscosity = (
+            check_positive("E0", E0, "Pa"),
+            check_positive("viscosity", viscosity, "Pa s"),
+        )
         return cls(E0, viscosity / E0, poisson)
 
     @classmethod
@@ -77,8 +80,11 @@ class Maxwell(Solid):
         viscosity
             Viscosity η in *shear*, Pa s.
         """
-        G0, viscosity = positive("G0", G0, "Pa"), positive("viscosity", viscosity, "Pa s")
-        return cls(2 * (1 + poisson_ratio(poisson)) * G0, viscosity / G0, poisson)
+        G0, viscosity = (
+            check_positive("G0", G0, "Pa"),
+            check_positive("viscosity", viscosity, "Pa s"),
+        )
+        return cls(2 * (1 + check_poisson_ratio(poisson)) * G0, viscosity / G0, poisson)
 
     @property
     def compliance(self) -> CreepCompliance:
@@ -116,18 +122,18 @@ class GeneralizedMaxwell(Solid):
     poisson: float
 
     def __post_init__(self) -> None:
-        E_inf = finite("E_inf", self.E_inf, "Pa")
+        E_inf = check_finite("E_inf", self.E_inf, "Pa")
         if E_inf < 0:
             raise ValueError(f"E_inf = {E_inf:g} Pa: must be positive, or 0 if the sample flows")
-        moduli = positives("moduli", self.moduli, "Pa", zeros=True)
-        times = positives("relaxation_times", self.relaxation_times, "s")
-        as_many("relaxation_times", times, "moduli", moduli)
+        moduli = check_positives("moduli", self.moduli, "Pa", zeros=True)
+        times = check_positives("relaxation_times", self.relaxation_times, "s")
+        check_count("relaxation_times", times, "moduli", moduli)
         if E_inf == 0 and not any(moduli):
             raise ValueError("moduli has no entry above 0 Pa: must have one where E_inf = 0 Pa")
         object.__setattr__(self, "E_inf", E_inf)
         object.__setattr__(self, "moduli", moduli)
         object.__setattr__(self, "relaxation_times", times)
-        object.__setattr__(self, "poisson", poisson_ratio(self.poisson))
+        object.__setattr__(self, "poisson", check_poisson_ratio(self.poisson))
 
     @classmethod
     def from_shear(
@@ -142,12 +148,12 @@ class GeneralizedMaxwell(Solid):
         shear_moduli
             Shear moduli G_k, Pa; zeros count for nothing.
         """
-        factor = 2 * (1 + poisson_ratio(poisson))
-        G_inf = finite("G_inf", G_inf, "Pa")
+        factor = 2 * (1 + check_poisson_ratio(poisson))
+        G_inf = check_finite("G_inf", G_inf, "Pa")
         if G_inf < 0:
             raise ValueError(f"G_inf = {G_inf:g} Pa: must be positive, or 0 if the sample flows")
-        shear_moduli = positives("shear_moduli", shear_moduli, "Pa", zeros=True)
-        times = positives("relaxation_times", relaxation_times, "s")
+        shear_moduli = check_positives("shear_moduli", shear_moduli, "Pa", zeros=True)
+        times = check_positives("relaxation_times", relaxation_times, "s")
         return cls(factor * G_inf, tuple(factor * G for G in shear_moduli), times, poisson)
 
     @classmethod
@@ -166,8 +172,8 @@ class GeneralizedMaxwell(Solid):
         ratios
             E_k/E0, no unit, of which the sum is at most 1; it flows if the sum is 1.
         """
-        E0 = positive("E0", E0, "Pa")
-        ratios = positives("ratios", ratios, "", zeros=True)
+        E0 = check_positive("E0", E0, "Pa")
+        ratios = check_positives("ratios", ratios, "", zeros=True)
         rest = 1 - fsum(ratios)
         if rest < -_ROUND_OFF:
             raise ValueError(
@@ -183,7 +189,7 @@ class GeneralizedMaxwell(Solid):
                 AccuracyWarning,
                 stacklevel=2,
             )
-        times = positives("relaxation_times", relaxation_times, "s")
+        times = check_positives("relaxation_times", relaxation_times, "s")
         return cls(E_inf, tuple(E0 * ratio for ratio in ratios), times, poisson)
 
     @classmethod
@@ -219,7 +225,7 @@ class GeneralizedMaxwell(Solid):
         ``softafm.rheology.prony_fit`` tells the method.
         """
         sample = cls(*fit_prony(frequency, storage, loss, per_decade), poisson)
-        object.__setattr__(sample, "dma_misfit", dma_misfit(sample, frequency, storage, loss))
+        object.__setattr__(sample, "dma_misfit", measure_misfit(sample, frequency, storage, loss))
         warn_of_misfit(sample, frequency, storage, loss)
         return sample
 

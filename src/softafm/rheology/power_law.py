@@ -6,10 +6,10 @@ from typing import ClassVar, NamedTuple
 
 import numpy as np
 
-from softafm.checks.validate import poisson_ratio, positive
-from softafm.rheology.lists import window_of
-from softafm.rheology.represented import Represented, exponent_of
-from softafm.rheology.series import Response, error_of
+from softafm.checks.validate import check_poisson_ratio, check_positive
+from softafm.rheology.lists import check_window
+from softafm.rheology.represented import Represented, check_exponent
+from softafm.rheology.series import Response, check_error
 
 
 @dataclass(frozen=True)
@@ -57,13 +57,13 @@ class PowerLaw(Represented):
     error: float = 0.01
 
     def __post_init__(self) -> None:
-        time = positive("reference_time", self.reference_time, "s")
-        object.__setattr__(self, "E1", positive("E1", self.E1, "Pa"))
-        object.__setattr__(self, "exponent", exponent_of(self.exponent))
-        object.__setattr__(self, "window", window_of(self.window))
-        object.__setattr__(self, "poisson", poisson_ratio(self.poisson))
+        time = check_positive("reference_time", self.reference_time, "s")
+        object.__setattr__(self, "E1", check_positive("E1", self.E1, "Pa"))
+        object.__setattr__(self, "exponent", check_exponent(self.exponent))
+        object.__setattr__(self, "window", check_window(self.window))
+        object.__setattr__(self, "poisson", check_poisson_ratio(self.poisson))
         object.__setattr__(self, "reference_time", time)
-        object.__setattr__(self, "error", error_of(self.error))
+        object.__setattr__(self, "error", check_error(self.error))
 
     @classmethod
     def springpot(
@@ -75,8 +75,8 @@ class PowerLaw(Represented):
         error: float = 0.01,
     ) -> "PowerLaw":
         """Build from σ = V d^a ε/dt^a with V in Pa s^a: E(t) = V t^−a/Γ(1 − a)."""
-        exponent = exponent_of(exponent)
-        V = positive("quasi_property", quasi_property, "Pa s^a")
+        exponent = check_exponent(exponent)
+        V = check_positive("quasi_property", quasi_property, "Pa s^a")
         return cls(V / gamma(1 - exponent), exponent, window, poisson, 1.0, error)
 
     @property

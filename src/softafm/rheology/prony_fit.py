@@ -7,13 +7,13 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
-from softafm.checks.validate import finite
+from softafm.checks.validate import check_finite
 from softafm.rheology.closest import (
-    closest,
-    closest_of_all,
-    columns,
-    delays,
-    ends,
+    differentiate,
+    find_ends,
+    fit_closest,
+    fit_closest_of_all,
+    make_columns,
     refuse_impossible,
 )
 from softafm.rheology.dma import sort_moduli
@@ -62,11 +62,11 @@ def fit_prony(
     G. Schwarz, Ann. Statist. 6, 461 (1978).
     """
     data = sort_moduli(frequency, storage, loss)
-    per_decade = finite("per_decade", per_decade, "times")
+    per_decade = check_finite("per_decade", per_decade, "times")
     if not 0.5 <= per_decade <= 10:
         raise ValueError(f"per_decade = {per_decade:g} times: must be between 0.5 and 10")
     refuse_impossible(*data)
-    return _fitted(per_decade, *(tuple(values.tolist()) for values in data))
+    return _fit(per_decade, *(tuple(values.tolist()) for values in data))
 
 
 class _Series(NamedTuple):
@@ -82,15 +82,15 @@ class _Series(NamedTuple):
 
 
 @lru_cache(maxsize=32)
-def _fitted(
+def _fit(
     per_decade: float, *values: tuple[float, ...]
 ) -> tuple[float, tuple[float, ...], tuple[float, ...]]:
     data = [np.array(each) for each in values]
     count = 2 * data[0].size
-    times, moduli, _ = closest_of_all(*data)
-    series = _moved(data, *_merged(moduli, times, log(10) / per_decade))
+    times, moduli, _ = fit_closest_of_all(*data)
+    series = _move(data, *_merge(moduli, times, log(10) / per_decade))
     while np.count_nonzero(series.moduli) > 1:
-        fewer = _without_the_least(data, series)
+        fewer = _drop_least(data, series)
         noise = max(series.cost / max(count - series.parameters, 1), _EXACT**2)
         allowed = noise * log(count) * (series.parameters - fewer.parameters)
         if fewer.cost - series.cost > allowed:
@@ -99,7 +99,7 @@ def _fitted(
     return float(series.moduli[0]), tuple(series.moduli[1:].tolist()), tuple(series.times.tolist())
 
 
-def _merged(moduli: np.ndarray, times: np.ndarray, apart: float) -> tuple[np.ndarray, np.ndarray]:
+def _merge(moduli: np.ndarray, times: np.ndarray, apart: float) -> tuple[np.ndarray, np.ndarray]:
     """Return the series with terms merged, nearest first, until all ln λ are ``apart``."""
     used = np.flatnonzero(moduli[1:])
     weights, places = moduli[1:][used], np.log(times[used])
@@ -112,7 +112,7 @@ def _merged(moduli: np.ndarray, times: np.ndarray, apart: float) -> tuple[np.nda
     return np.append(moduli[0], weights), np.exp(places)
 
 
-def _moved(data: list[np.ndarray], moduli: np.ndarray, times: np.ndarray) -> _Series:
+def _move(data: list[np.ndarray], moduli: np.ndarray, times: np.ndarray) -> _Series:
     """Return the series of the least relative misfit from here, all logarithms being free."""
     from scipy.optimize import least_squares
 
@@ -126,15 +126,18 @@ def _moved(data: list[np.ndarray], moduli: np.ndarray, times: np.ndarray) -> _Se
 
     def misfit(logs: np.ndarray) -> np.ndarray:
         moduli, times = split(logs)
-        return columns(times, *data) @ moduli - 1
+        return make_columns(times, *data) @ moduli - 1
 
     def slopes(logs: np.ndarray) -> np.ndarray:
         moduli, times = split(logs)
         return np.hstack(
-            [(columns(times, *data) * moduli)[:, 1 - solid :], delays(times, *data) * moduli[1:]]
+            [
+                (make_columns(times, *data) * moduli)[:, 1 - solid :],
+                differentiate(times, *data) * moduli[1:],
+            ]
         )
 
-    shortest, longest = np.log(ends(*data))
+    shortest, longest = np.log(find_ends(*data))
     low, high = start - _FARTHEST, start + _FARTHEST
     low[strengths:], high[strengths:] = shortest, longest
     found = least_squares(
@@ -150,15 +153,15 @@ def _moved(data: list[np.ndarray], moduli: np.ndarray, times: np.ndarray) -> _Se
     return _Series(np.append(moduli[0], moduli[1:][order]), times[order], 2 * found.cost)
 
 
-def _without_the_least(data: list[np.ndarray], series: _Series) -> _Series:
+def _drop_least(data: list[np.ndarray], series: _Series) -> _Series:
     """Return the series without the term whose loss raises the misfit least."""
-    rows = columns(series.times, *data)
+    rows = make_columns(series.times, *data)
     found = []
     for place in np.flatnonzero(series.moduli):
         moduli = np.zeros(series.moduli.size)
         others = np.arange(moduli.size) != place
-        moduli[others] = closest(rows[:, others])
+        moduli[others] = fit_closest(rows[:, others])
         found.append((float(np.sum((rows @ moduli - 1) ** 2)), int(place), moduli))
     moduli = min(found)[2]
     used = np.flatnonzero(moduli[1:])
-    return _moved(data, np.append(moduli[0], moduli[1:][used]), series.times[used])
+    return _move(data, np.append(moduli[0], moduli[1:][used]), series.times[used])

@@ -8,16 +8,16 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from softafm.checks.deprecated import Renamed
-from softafm.checks.validate import finite
+from softafm.checks.validate import check_finite
 from softafm.rheology.compliance import CreepCompliance
-from softafm.rheology.lists import samples
-from softafm.rheology.series import Response, Series, fewest_elements
+from softafm.rheology.lists import check_points
+from softafm.rheology.series import Response, Series, find_fewest_elements
 from softafm.rheology.solid import Solid
 
 
-def exponent_of(value: float) -> float:
+def check_exponent(value: float) -> float:
     """Return ``value`` if it lies between those of a spring, 0, and of a dashpot, 1."""
-    number = finite("exponent", value, "")
+    number = check_finite("exponent", value, "")
     if not 0 < number < 1:
         raise ValueError(f"exponent = {number:g}: must be above 0 (elastic) and below 1 (viscous)")
     return number
@@ -44,7 +44,7 @@ class Represented(Solid):
 
     @cached_property
     def _series(self) -> Series:
-        return fewest_elements(self._response, self.window, self.error)
+        return find_fewest_elements(self._response, self.window, self.error)
 
     @property
     def represented_error(self) -> float:
@@ -72,9 +72,9 @@ class Represented(Solid):
 
     def exact_creep_compliance(self, time: ArrayLike) -> np.ndarray:
         """Uniaxial creep compliance of the law itself at ``time`` > 0 (s), 1/Pa."""
-        return self._scale * self._response.creep(samples("time", time, "s") / self.window[0])
+        return self._scale * self._response.creep(check_points("time", time, "s") / self.window[0])
 
     def exact_complex_compliance(self, frequency: ArrayLike) -> np.ndarray:
         """Uniaxial complex compliance of the law itself at ``frequency`` > 0 (Hz), 1/Pa."""
-        angular = 2 * pi * samples("frequency", frequency, "Hz")
+        angular = 2 * pi * check_points("frequency", frequency, "Hz")
         return self._scale * self._response.complex_compliance(angular * self.window[0])

@@ -7,7 +7,7 @@ from typing import NamedTuple, Protocol
 
 import numpy as np
 
-from softafm.checks.validate import finite
+from softafm.checks.validate import check_finite
 from softafm.rheology.compliance import CreepCompliance
 
 MOST_ELEMENTS = 40
@@ -41,15 +41,15 @@ class Series(NamedTuple):
     error: float
 
 
-def error_of(value: float) -> float:
+def check_error(value: float) -> float:
     """Return ``value`` if it is an error that a series can keep."""
-    number = finite("error", value, "")
+    number = check_finite("error", value, "")
     if not 1e-5 <= number <= 0.5:
         raise ValueError(f"error = {number:g}: must be between 1e-5 and 0.5")
     return number
 
 
-def fewest_elements(response: Response, window: tuple[float, float], error: float) -> Series:
+def find_fewest_elements(response: Response, window: tuple[float, float], error: float) -> Series:
     """Return the chain of the fewest elements that keeps ``error`` over a window.
 
     The error is the largest relative deviation of the creep compliance at times in the window, and
@@ -63,7 +63,7 @@ def fewest_elements(response: Response, window: tuple[float, float], error: floa
     """
     shortest, longest = window
     ratio = longest / shortest
-    series = _fewest(response, ratio, error) if ratio < _WIDEST else None
+    series = _find_fewest(response, ratio, error) if ratio < _WIDEST else None
     if series is None:
         raise ValueError(
             f"error = {error:g} over window = ({shortest:g}, {longest:g}) s needs more than "
@@ -73,7 +73,7 @@ def fewest_elements(response: Response, window: tuple[float, float], error: floa
 
 
 @lru_cache(maxsize=64)
-def _fewest(response: Response, longest: float, error: float) -> Series | None:
+def _find_fewest(response: Response, longest: float, error: float) -> Series | None:
     """Return the chain of the fewest elements that keeps ``error`` from time 1 to ``longest``.
 
     Modes start at equal ratios with weights by non-negative least squares, and move freely by least
@@ -82,7 +82,7 @@ def _fewest(response: Response, longest: float, error: float) -> Series | None:
     coarse, fine = (_Samples(response, longest, n) for n in (_FITTED, _MEASURED))
 
     def levelled(count: int) -> Series:
-        logs = _levelled(coarse, _equally_spaced(coarse, count))
+        logs = _level(coarse, _space_equally(coarse, count))
         return Series(fine.compliance(logs), fine.error(logs))
 
     # Equal spacing h in ln τ leaves a ripple of some 2 exp(−π²/h); two elements more for the ends.
@@ -163,7 +163,7 @@ class _Samples:
         return CreepCompliance(float(weights[0]), elements[order], times[order], fluidity)
 
 
-def _equally_spaced(samples: _Samples, count: int) -> np.ndarray:
+def _space_equally(samples: _Samples, count: int) -> np.ndarray:
     """Return a chain of elements at equal ratios, weighed by non-negative least squares."""
     from scipy.optimize import nnls
 
@@ -178,7 +178,7 @@ def _equally_spaced(samples: _Samples, count: int) -> np.ndarray:
     return np.log(np.concatenate([np.maximum(weights, 1e-5 / np.max(np.abs(columns), 0)), times]))
 
 
-def _levelled(samples: _Samples, logs: np.ndarray) -> np.ndarray:
+def _level(samples: _Samples, logs: np.ndarray) -> np.ndarray:
     """Return the chain of as many elements whose largest error is least, or nearly so.
 
     Levenberg-Marquardt steps in the logarithms, and after every third a shift of emphasis.

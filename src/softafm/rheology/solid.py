@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike
 from softafm.checks.kinds import REDUCED
 from softafm.rheology.compliance import CreepCompliance
 from softafm.rheology.interconversion import chain_to_prony
-from softafm.rheology.lists import samples
+from softafm.rheology.lists import check_points
 
 
 class Solid(ABC):
@@ -49,11 +49,11 @@ class Solid(ABC):
 
     def creep_compliance(self, time: ArrayLike) -> np.ndarray:
         """Uniaxial creep compliance 1/E(t) at ``time`` ≥ 0 (s) after a step of stress, 1/Pa."""
-        return self.compliance.at(samples("time", time, "s", 0))
+        return self.compliance.at(check_points("time", time, "s", 0))
 
     def relaxation_modulus(self, time: ArrayLike) -> np.ndarray:
         """Young's relaxation modulus at ``time`` ≥ 0 (s) after a step of strain, Pa."""
-        t = samples("time", time, "s", 0)[..., None]
+        t = check_points("time", time, "s", 0)[..., None]
         E_inf, moduli, times = self._prony
         return E_inf + np.sum(moduli * np.exp(-t / times), axis=-1)
 
@@ -66,5 +66,5 @@ class Solid(ABC):
         return self._complex_modulus(frequency).imag
 
     def _complex_modulus(self, frequency: ArrayLike) -> np.ndarray:
-        angular = 2 * pi * samples("frequency", frequency, "Hz")
+        angular = 2 * pi * check_points("frequency", frequency, "Hz")
         return 1 / self.compliance.complex_at(angular)

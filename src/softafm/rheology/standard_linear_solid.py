@@ -5,7 +5,7 @@ from typing import ClassVar
 
 import numpy as np
 
-from softafm.checks.validate import poisson_ratio, positive
+from softafm.checks.validate import check_poisson_ratio, check_positive
 from softafm.rheology.compliance import CreepCompliance
 from softafm.rheology.solid import Solid
 
@@ -41,10 +41,10 @@ class StandardLinearSolid(Solid):
     poisson: float
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "E0", positive("E0", self.E0, "Pa"))
-        object.__setattr__(self, "E_inf", positive("E_inf", self.E_inf, "Pa"))
-        object.__setattr__(self, "creep_time", positive("creep_time", self.creep_time, "s"))
-        object.__setattr__(self, "poisson", poisson_ratio(self.poisson))
+        object.__setattr__(self, "E0", check_positive("E0", self.E0, "Pa"))
+        object.__setattr__(self, "E_inf", check_positive("E_inf", self.E_inf, "Pa"))
+        object.__setattr__(self, "creep_time", check_positive("creep_time", self.creep_time, "s"))
+        object.__setattr__(self, "poisson", check_poisson_ratio(self.poisson))
         if self.E_inf > self.E0:
             raise ValueError(
                 f"E_inf = {self.E_inf:g} Pa: must be at most E0 = {self.E0:g} Pa "
@@ -62,8 +62,8 @@ class StandardLinearSolid(Solid):
         relaxation_time
             Stress-relaxation time τ_σ at constant strain, s; shorter than the creep time.
         """
-        relaxation_time = positive("relaxation_time", relaxation_time, "s")
-        E0, E_inf = positive("E0", E0, "Pa"), positive("E_inf", E_inf, "Pa")
+        relaxation_time = check_positive("relaxation_time", relaxation_time, "s")
+        E0, E_inf = check_positive("E0", E0, "Pa"), check_positive("E_inf", E_inf, "Pa")
         return cls(E0, E_inf, relaxation_time * E0 / E_inf, poisson)
 
     @classmethod
@@ -77,8 +77,8 @@ class StandardLinearSolid(Solid):
         G0, G_inf
             Short- and long-term shear modulus, Pa; G_inf ≤ G0.
         """
-        G0, G_inf = positive("G0", G0, "Pa"), positive("G_inf", G_inf, "Pa")
-        factor = 2 * (1 + poisson_ratio(poisson))
+        G0, G_inf = check_positive("G0", G0, "Pa"), check_positive("G_inf", G_inf, "Pa")
+        factor = 2 * (1 + check_poisson_ratio(poisson))
         return cls(factor * G0, factor * G_inf, creep_time, poisson)
 
     @property

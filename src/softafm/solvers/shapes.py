@@ -16,7 +16,7 @@ class Shape(NamedTuple):
     deformation: np.ndarray
 
 
-def on_common_radii(shapes: list[Shape]) -> Profiles:
+def interpolate_to_common_radii(shapes: list[Shape]) -> Profiles:
     """Interpolate shapes by quintic splines to 301 radii out to thrice the widest frame.
 
     Beyond its mesh a surface falls off as 1/r, or as its body says.

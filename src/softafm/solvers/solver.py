@@ -4,7 +4,7 @@ from inspect import Parameter, signature
 from typing import Any, Protocol
 
 from softafm.checks.kinds import members, refuse_incomplete, refuse_other
-from softafm.checks.refusals import all_of
+from softafm.checks.refusals import join_with_and
 from softafm.instrument.motion import Motion
 from softafm.progress import Progress
 from softafm.solvers.history import History
@@ -63,7 +63,7 @@ def check_solver(solver: Any) -> None:
     names = {each.name for each in known}
     if missing := [name for name in _OPTIONS if name not in names]:
         raise ValueError(
-            f"solver.solve: of the solver '{solver.kind}' must take {all_of(missing)}; "
+            f"solver.solve: of the solver '{solver.kind}' must take {join_with_and(missing)}; "
             "softafm.solvers.solver.Solver states its arguments"
         )
 

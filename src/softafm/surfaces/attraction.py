@@ -6,7 +6,7 @@ from typing import ClassVar
 
 import numpy as np
 
-from softafm.checks.validate import positive
+from softafm.checks.validate import check_positive
 from softafm.compiled.formulas import Term
 from softafm.surfaces.law import SurfaceLaw
 from softafm.surfaces.limits import check_length
@@ -42,7 +42,7 @@ class VanDerWaalsAttraction(SurfaceLaw):
     cutoff: float = 0.165e-9
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "hamaker", positive("hamaker", self.hamaker, "J"))
+        object.__setattr__(self, "hamaker", check_positive("hamaker", self.hamaker, "J"))
         object.__setattr__(self, "cutoff", check_length("cutoff", self.cutoff))
 
     @property

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 from math import sqrt, tanh
 from typing import ClassVar
 
-from softafm.checks.validate import between, positive
+from softafm.checks.validate import check_between, check_positive
 from softafm.compiled.formulas import Term
 from softafm.surfaces.law import SurfaceLaw
 from softafm.surfaces.lennard_jones import _lennard_jones
@@ -63,15 +63,15 @@ class DLVO(SurfaceLaw):
     tip_potential: float | None = None
 
     def __post_init__(self) -> None:
-        psi = between("surface_potential", self.surface_potential, "V", -1, 1)
-        object.__setattr__(self, "hamaker", positive("hamaker", self.hamaker, "J"))
+        psi = check_between("surface_potential", self.surface_potential, "V", -1, 1)
+        object.__setattr__(self, "hamaker", check_positive("hamaker", self.hamaker, "J"))
         object.__setattr__(self, "z0", check_length("z0", self.z0))
         object.__setattr__(self, "surface_potential", psi)
         object.__setattr__(self, "debye_length", check_length("debye_length", self.debye_length))
         object.__setattr__(self, "temperature", _check_temperature(self.temperature))
         object.__setattr__(self, "permittivity", _check_permittivity(self.permittivity))
         if self.tip_potential is not None:
-            other = between("tip_potential", self.tip_potential, "V", -1, 1)
+            other = check_between("tip_potential", self.tip_potential, "V", -1, 1)
             object.__setattr__(self, "tip_potential", other)
 
     @classmethod
@@ -92,7 +92,7 @@ class DLVO(SurfaceLaw):
         concentration
             Concentration of the 1:1 salt, mol/L, 1e-7 (pure water) to 10.
         """
-        n = 1e3 * _AVOGADRO * between("concentration", concentration, "mol/L", 1e-7, 10)
+        n = 1e3 * _AVOGADRO * check_between("concentration", concentration, "mol/L", 1e-7, 10)
         epsilon = _VACUUM * _check_permittivity(permittivity)
         squared = epsilon * _BOLTZMANN * _check_temperature(temperature) / (2 * n * _CHARGE**2)
         return cls(
@@ -115,8 +115,8 @@ class DLVO(SurfaceLaw):
 
 
 def _check_temperature(value: float) -> float:
-    return between("temperature", value, "K", 200, 1000)
+    return check_between("temperature", value, "K", 200, 1000)
 
 
 def _check_permittivity(value: float) -> float:
-    return between("permittivity", value, "", 1, 1000)
+    return check_between("permittivity", value, "", 1, 1000)

@@ -4,7 +4,7 @@ from dataclasses import dataclass, replace
 from math import pi
 from typing import ClassVar
 
-from softafm.checks.validate import between, positive
+from softafm.checks.validate import check_between, check_positive
 from softafm.compiled.formulas import Term
 from softafm.surfaces.attraction import attraction
 from softafm.surfaces.law import SurfaceLaw
@@ -48,9 +48,9 @@ class DMT(SurfaceLaw):
     wall: float = 0.1
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "hamaker", positive("hamaker", self.hamaker, "J"))
+        object.__setattr__(self, "hamaker", check_positive("hamaker", self.hamaker, "J"))
         object.__setattr__(self, "z0", check_length("z0", self.z0))
-        object.__setattr__(self, "wall", between("wall", self.wall, "", *_WALLS))
+        object.__setattr__(self, "wall", check_between("wall", self.wall, "", *_WALLS))
 
     @classmethod
     def from_work_of_adhesion(cls, W: float, z0: float, wall: float = 0.1) -> "DMT":
@@ -61,8 +61,8 @@ class DMT(SurfaceLaw):
         W
             Work per area to part the surfaces, J/m².
         """
-        W, z0 = positive("W", W, "J/m²"), check_length("z0", z0)
-        share = 1 - 2 * between("wall", wall, "", *_WALLS)
+        W, z0 = check_positive("W", W, "J/m²"), check_length("z0", z0)
+        share = 1 - 2 * check_between("wall", wall, "", *_WALLS)
         return cls(12 * pi * z0**2 * W / share, z0, wall)
 
     @property
@@ -77,7 +77,7 @@ class DMT(SurfaceLaw):
 
     def stretched(self, factor: float) -> "DMT":
         """Return the law with all its lengths times ``factor``, of the same work of adhesion."""
-        factor = positive("factor", factor, "")
+        factor = check_positive("factor", factor, "")
         return replace(self, hamaker=factor**2 * self.hamaker, z0=factor * self.z0)
 
     @property

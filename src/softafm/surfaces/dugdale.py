@@ -7,7 +7,7 @@ from typing import ClassVar
 
 import numpy as np
 
-from softafm.checks.validate import between, positive
+from softafm.checks.validate import check_between, check_positive
 from softafm.compiled.formulas import Term
 from softafm.surfaces.law import SurfaceLaw
 from softafm.surfaces.limits import check_length
@@ -54,11 +54,13 @@ class Dugdale(SurfaceLaw):
     smoothing: float = 0.1
 
     def __post_init__(self) -> None:
-        W = positive("work_of_adhesion", self.work_of_adhesion, "J/m²")
+        W = check_positive("work_of_adhesion", self.work_of_adhesion, "J/m²")
         object.__setattr__(self, "work_of_adhesion", W)
         object.__setattr__(self, "z0", check_length("z0", self.z0))
-        object.__setattr__(self, "tension", positive("tension", self.tension, "Pa"))
-        object.__setattr__(self, "smoothing", between("smoothing", self.smoothing, "", 0.02, 0.3))
+        object.__setattr__(self, "tension", check_positive("tension", self.tension, "Pa"))
+        object.__setattr__(
+            self, "smoothing", check_between("smoothing", self.smoothing, "", 0.02, 0.3)
+        )
         try:
             check_length("work_of_adhesion/tension", W / self.tension)
         except ValueError as error:
@@ -82,7 +84,7 @@ class Dugdale(SurfaceLaw):
 
     def stretched(self, factor: float) -> "Dugdale":
         """Return the law with all its lengths times ``factor``, of the same work of adhesion."""
-        factor = positive("factor", factor, "")
+        factor = check_positive("factor", factor, "")
         return replace(self, z0=factor * self.z0, tension=self.tension / factor)
 
     @property

@@ -6,7 +6,7 @@ from typing import ClassVar
 
 import numpy as np
 
-from softafm.checks.validate import positive
+from softafm.checks.validate import check_positive
 from softafm.compiled.formulas import Term
 from softafm.surfaces.law import SurfaceLaw
 
@@ -37,8 +37,8 @@ class LennardJones(SurfaceLaw):
     z0: float
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "hamaker", positive("hamaker", self.hamaker, "J"))
-        object.__setattr__(self, "z0", positive("z0", self.z0, "m"))
+        object.__setattr__(self, "hamaker", check_positive("hamaker", self.hamaker, "J"))
+        object.__setattr__(self, "z0", check_positive("z0", self.z0, "m"))
 
     @classmethod
     def from_work_of_adhesion(cls, W: float, z0: float) -> "LennardJones":
@@ -49,8 +49,8 @@ class LennardJones(SurfaceLaw):
         W
             Work per area to part the surfaces, J/m².
         """
-        W = positive("W", W, "J/m²")
-        z0 = positive("z0", z0, "m")
+        W = check_positive("W", W, "J/m²")
+        z0 = check_positive("z0", z0, "m")
         return cls(hamaker=16 * pi * z0**2 * W, z0=z0)
 
     @property
@@ -75,7 +75,7 @@ class LennardJones(SurfaceLaw):
 
     def stretched(self, factor: float) -> "LennardJones":
         """Return the law with all its lengths times ``factor``, of the same work of adhesion."""
-        factor = positive("factor", factor, "")
+        factor = check_positive("factor", factor, "")
         return replace(self, hamaker=factor**2 * self.hamaker, z0=factor * self.z0)
 
     @property

@@ -6,7 +6,7 @@ from typing import ClassVar
 
 import numpy as np
 
-from softafm.checks.validate import positive
+from softafm.checks.validate import check_positive
 from softafm.compiled.formulas import Term
 from softafm.surfaces.law import SurfaceLaw
 from softafm.surfaces.limits import check_length
@@ -42,7 +42,7 @@ class Morse(SurfaceLaw):
     decay: float
 
     def __post_init__(self) -> None:
-        W = positive("work_of_adhesion", self.work_of_adhesion, "J/m²")
+        W = check_positive("work_of_adhesion", self.work_of_adhesion, "J/m²")
         object.__setattr__(self, "work_of_adhesion", W)
         object.__setattr__(self, "z0", check_length("z0", self.z0))
         object.__setattr__(self, "decay", check_length("decay", self.decay))
@@ -59,7 +59,7 @@ class Morse(SurfaceLaw):
 
     def stretched(self, factor: float) -> "Morse":
         """Return the law with all its lengths times ``factor``, of the same work of adhesion."""
-        factor = positive("factor", factor, "")
+        factor = check_positive("factor", factor, "")
         return replace(self, z0=factor * self.z0, decay=factor * self.decay)
 
     @property

@@ -5,7 +5,7 @@ from typing import ClassVar
 
 import numpy as np
 
-from softafm.checks.validate import positive
+from softafm.checks.validate import check_positive
 from softafm.compiled.formulas import Term
 from softafm.surfaces.law import SurfaceLaw
 from softafm.surfaces.limits import check_length
@@ -34,7 +34,7 @@ class Repulsion(SurfaceLaw):
     decay: float
 
     def __post_init__(self) -> None:
-        P0 = positive("pressure_at_zero", self.pressure_at_zero, "Pa")
+        P0 = check_positive("pressure_at_zero", self.pressure_at_zero, "Pa")
         object.__setattr__(self, "pressure_at_zero", P0)
         object.__setattr__(self, "decay", check_length("decay", self.decay))
 

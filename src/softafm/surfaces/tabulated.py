@@ -8,7 +8,7 @@ from typing import ClassVar
 
 import numpy as np
 
-from softafm.checks.validate import numbers, whole
+from softafm.checks.validate import check_numbers, check_whole
 from softafm.compiled.formulas import Term
 from softafm.surfaces.law import SurfaceLaw
 from softafm.surfaces.limits import check_length
@@ -52,8 +52,8 @@ class Tabulated(SurfaceLaw):
 
     def __post_init__(self) -> None:
         gaps, pressures = (
-            numbers("gaps", self.gaps, "m"),
-            numbers("pressures", self.pressures, "Pa"),
+            check_numbers("gaps", self.gaps, "m"),
+            check_numbers("pressures", self.pressures, "Pa"),
         )
         _refuse_what_is_no_law(gaps, pressures)
         object.__setattr__(self, "gaps", gaps)
@@ -73,7 +73,9 @@ class Tabulated(SurfaceLaw):
             raise ValueError(
                 f"longest = {longest:g} m: must be above the shortest gap, {shortest:g} m"
             )
-        gaps = np.geomspace(shortest, longest, whole("points", points, _LEAST, 10_000)).tolist()
+        gaps = np.geomspace(
+            shortest, longest, check_whole("points", points, _LEAST, 10_000)
+        ).tolist()
         return cls(tuple(gaps), tuple(pressure(gap) for gap in gaps))
 
     @cached_property

@@ -6,7 +6,7 @@ from typing import ClassVar
 
 import numpy as np
 
-from softafm.checks.validate import finite, positive
+from softafm.checks.validate import check_finite, check_positive
 from softafm.compiled.formulas import Term
 from softafm.surfaces.law import SurfaceLaw
 from softafm.surfaces.limits import check_length
@@ -43,15 +43,15 @@ class VanDerWaals(SurfaceLaw):
     exponent: float = 9.0
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "hamaker", positive("hamaker", self.hamaker, "J"))
+        object.__setattr__(self, "hamaker", check_positive("hamaker", self.hamaker, "J"))
         object.__setattr__(self, "z0", check_length("z0", self.z0))
         object.__setattr__(self, "exponent", _check_exponent(self.exponent))
 
     @classmethod
     def from_repulsion(cls, hamaker: float, strength: float, exponent: float) -> "VanDerWaals":
         """Build the law from H, J, and a repulsion of its own, strength/hⁿ, strength in Pa mⁿ."""
-        H, n = positive("hamaker", hamaker, "J"), _check_exponent(exponent)
-        B = positive("strength", strength, "Pa m^n")
+        H, n = check_positive("hamaker", hamaker, "J"), _check_exponent(exponent)
+        B = check_positive("strength", strength, "Pa m^n")
         try:
             return cls(H, (6 * pi * B / H) ** (1 / (n - 3)), n)
         except (ValueError, OverflowError) as error:
@@ -66,7 +66,7 @@ class VanDerWaals(SurfaceLaw):
         W
             Work per area to part the surfaces, J/m².
         """
-        W, z0, n = positive("W", W, "J/m²"), check_length("z0", z0), _check_exponent(exponent)
+        W, z0, n = check_positive("W", W, "J/m²"), check_length("z0", z0), _check_exponent(exponent)
         return cls(12 * pi * z0**2 * W * (n - 1) / (n - 3), z0, n)
 
     @property
@@ -87,7 +87,7 @@ class VanDerWaals(SurfaceLaw):
 
     def stretched(self, factor: float) -> "VanDerWaals":
         """Return the law with all its lengths times ``factor``, of the same work of adhesion."""
-        factor = positive("factor", factor, "")
+        factor = check_positive("factor", factor, "")
         return replace(self, hamaker=factor**2 * self.hamaker, z0=factor * self.z0)
 
     @property
@@ -107,7 +107,7 @@ def _van_der_waals(
 
 
 def _check_exponent(value: float) -> float:
-    number = finite("exponent", value, "")
+    number = check_finite("exponent", value, "")
     if not 3 < number <= 100:
         raise ValueError(
             f"exponent = {number:g}: must be above 3, that of the attraction, and at most 100"

@@ -14,11 +14,11 @@ from typing import Any
 
 import numpy as np
 
-from softafm.checks.refusals import ConfigError, nearest, shown
+from softafm.checks.refusals import ConfigError, show, suggest
 from softafm.contact import Contact
 from softafm.errors import AccuracyWarning
-from softafm.experiment.config import build_table, experiment_from
-from softafm.experiment.fields import Keys, keys_of, replaced
+from softafm.experiment.config import build_experiment, build_table
+from softafm.experiment.fields import Keys, replace_value, split_path
 from softafm.modes import MODES, Axes, Mode
 from softafm.results.content import VARIABLES
 from softafm.sweeps.designs import Design
@@ -107,13 +107,13 @@ class RunExperiment:
         """Return the experiment of a run; ConfigError if there is none."""
         document = self.document
         for path, value in values.items():
-            document = replaced(document, _split_path(path), value)
-        return experiment_from(document, self.folder, _reuse_table)
+            document = replace_value(document, _split_path(path), value)
+        return build_experiment(document, self.folder, _reuse_table)
 
 
 @lru_cache(maxsize=1024)
 def _split_path(path: str) -> Keys:
-    return keys_of(path)
+    return split_path(path)
 
 
 def _reuse_contact(contact: Contact) -> Contact:
@@ -159,14 +159,14 @@ def plan_experiments(
         If the document is no experiment with any of the values tried, if a value suits no
         experiment tried, or an observable is not one of the mode's.
     """
-    from softafm.experiment.regime import expected_seconds
+    from softafm.experiment.regime import estimate_seconds
 
     mode = MODES[document["mode"]]
     observed = tuple(mode.observed if names is None else names)
     _refuse_unknown(observed, mode.observed)
     run = RunExperiment(document, folder, observed)
     tried = _try_out(run, design)
-    costs = [expected_seconds(experiment) for experiment in tried[:: max(1, len(tried) // 20)]]
+    costs = [estimate_seconds(experiment) for experiment in tried[:: max(1, len(tried) // 20)]]
     coordinates: dict[str, Coordinate] = dict(design.coordinates)
     _refuse_axes(design, mode.axes)
     axes = [np.array(values) for values in mode.axes.values(tried[0].motion)]
@@ -196,7 +196,7 @@ def _refuse_unknown(observed: Sequence[Any], known: Sequence[str]) -> None:
         raise ConfigError(["sweep.observables = []: is empty; leave it out for all of them"])
     for name in observed:
         if not isinstance(name, str) or name not in known:
-            raise ConfigError([f"sweep.observables = {shown(name)}: {nearest(name, known)}"])
+            raise ConfigError([f"sweep.observables = {show(name)}: {suggest(name, known)}"])
         if list(observed).count(name) > 1:
             raise ConfigError([f"sweep.observables: '{name}' is listed twice; leave one out"])
 
@@ -276,7 +276,7 @@ class RunFunction:
         given = self.function(**values)
         if not isinstance(given, Mapping):
             raise TypeError(
-                f"gives {shown(given)}: must be a mapping of names to numbers, or a dataset"
+                f"gives {show(given)}: must be a mapping of names to numbers, or a dataset"
             )
         found = {}
         for name, value in (getattr(given, "data_vars", None) or given).items():
@@ -347,7 +347,7 @@ def _describe_observable(name: str, attributes: Mapping[str, str]) -> Observable
 
 
 def _write_values(values: Mapping[str, Any]) -> str:
-    return ", ".join(f"{name} = {shown(value)}" for name, value in values.items())
+    return ", ".join(f"{name} = {show(value)}" for name, value in values.items())
 
 
 def _find_source(function: Any) -> str | None:

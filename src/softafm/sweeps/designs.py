@@ -8,9 +8,9 @@ from typing import Any
 
 import numpy as np
 
-from softafm.checks.refusals import ConfigError, nearest, one_of, shown
-from softafm.checks.validate import whole
-from softafm.experiment.fields import Field, same_text
+from softafm.checks.refusals import ConfigError, join_with_or, show, suggest
+from softafm.checks.validate import check_whole
+from softafm.experiment.fields import Field, reword
 
 DESIGNS = ("grid", "random", "latin-hypercube", "sobol")
 MOST_RUNS = 100_000_000
@@ -123,7 +123,7 @@ def make_design(
         One line for each problem, with field, value and remedy.
     """
     if kind not in DESIGNS:
-        raise ConfigError([f"sweep.design = {shown(kind)}: {nearest(kind, DESIGNS)}"])
+        raise ConfigError([f"sweep.design = {show(kind)}: {suggest(kind, DESIGNS)}"])
     if not isinstance(vary, Mapping) or not vary:
         raise ConfigError(["sweep.vary: names nothing to vary; give a field and its values"])
     groups = [key if isinstance(key, tuple) else (key,) for key in vary]
@@ -135,7 +135,7 @@ def make_design(
     ]
     grid = kind == "grid"
     try:
-        count, seed = _check_samples(kind, samples), whole("sweep.seed", seed, 0, 2**63 - 1)
+        count, seed = _check_samples(kind, samples), check_whole("sweep.seed", seed, 0, 2**63 - 1)
     except ValueError as error:
         raise ConfigError([*problems, str(error)]) from None
     columns: list[list[tuple[Field, Any]]] = []
@@ -165,13 +165,13 @@ def _check_samples(kind: str, samples: int | None) -> int:
     if kind == "grid":
         if samples is not None:
             raise ValueError(
-                f"sweep.samples = {shown(samples)}: has no effect in a grid; leave it out, or "
-                f"choose the design {one_of(DESIGNS[1:])}"
+                f"sweep.samples = {show(samples)}: has no effect in a grid; leave it out, or "
+                f"choose the design {join_with_or(DESIGNS[1:])}"
             )
         return 0
     if samples is None:
         raise ValueError(f"sweep.samples: missing; the design '{kind}' needs a number of runs")
-    return whole("sweep.samples", samples, 1, MOST_RUNS)
+    return check_whole("sweep.samples", samples, 1, MOST_RUNS)
 
 
 def _refuse_size(runs: int, sizes: list[int], groups: list[tuple[str, ...]]) -> str:
@@ -208,7 +208,7 @@ def _read_group(group: tuple[str, ...], written: Any, field, grid: bool) -> list
 
 def _read_column(path: str, written: Any, field, grid: bool) -> tuple[Field, Any]:
     if not isinstance(path, str):
-        raise ConfigError([f"sweep.vary = {shown(path)}: must be a field, such as 'sample.E_inf'"])
+        raise ConfigError([f"sweep.vary = {show(path)}: must be a field, such as 'sample.E_inf'"])
     try:
         what = field(path)
     except ValueError as error:
@@ -221,14 +221,14 @@ def _read_column(path: str, written: Any, field, grid: bool) -> tuple[Field, Any
 def _read_list(field: Field, written: Any) -> list[Any]:
     if isinstance(written, str | bytes) or not hasattr(written, "__iter__"):
         raise ConfigError(
-            [same_text(field.path, None, written, "must be a list of values, or a range")]
+            [reword(field.path, None, written, "must be a list of values, or a range")]
         )
     values, problems = [], []
     for index, value in enumerate(written):
         try:
             values.append(field.read(_convert(value)))
         except (ValueError, OverflowError) as error:
-            problems.append(same_text(field.path, index, value, error))
+            problems.append(reword(field.path, index, value, error))
             if len(problems) == 3:
                 break
     if problems:
@@ -245,13 +245,13 @@ def _read_range(field: Field, written: Between | Mapping, grid: bool) -> Any:
     if isinstance(written, Mapping):
         unknown = [key for key in written if key not in _RANGE]
         if unknown:
-            raise ConfigError([f"{path}.{unknown[0]}: unknown key; {nearest(unknown[0], _RANGE)}"])
+            raise ConfigError([f"{path}.{unknown[0]}: unknown key; {suggest(unknown[0], _RANGE)}"])
         if missing := [key for key in ("from", "to") if key not in written]:
             raise ConfigError([f"{path}.{missing[0]}: missing; a range has from and to"])
         low, high = written["from"], written["to"]
         points, spacing = written.get("points"), written.get("spacing", "linear")
         if spacing not in ("linear", "log"):
-            raise ConfigError([f"{path}.spacing = {shown(spacing)}: must be 'linear' or 'log'"])
+            raise ConfigError([f"{path}.spacing = {show(spacing)}: must be 'linear' or 'log'"])
     else:
         low, high = written.low, written.high
         spacing = "log" if written.log else "linear"
@@ -267,14 +267,14 @@ def _read_range(field: Field, written: Between | Mapping, grid: bool) -> Any:
         try:
             ends.append(field.read(_convert(end)))
         except (ValueError, OverflowError) as error:
-            raise ConfigError([f"{path}.{key} = {shown(end)}: {error}"]) from None
+            raise ConfigError([f"{path}.{key} = {show(end)}: {error}"]) from None
         if isinstance(ends[-1], bool | str) or not isinstance(ends[-1], int | float):
-            raise ConfigError([f"{path}.{key} = {shown(end)}: must be a number; list other values"])
+            raise ConfigError([f"{path}.{key} = {show(end)}: must be a number; list other values"])
     start, stop = map(float, ends)
     if start == stop:
-        raise ConfigError([f"{path}.to = {shown(high)}: must differ from from; or list one value"])
+        raise ConfigError([f"{path}.to = {show(high)}: must differ from from; or list one value"])
     if spacing == "log" and min(start, stop) <= 0:
-        raise ConfigError([f"{path}.from = {shown(low)}: must be above 0 for spacing = 'log'"])
+        raise ConfigError([f"{path}.from = {show(low)}: must be above 0 for spacing = 'log'"])
     try:
         field.read(field.written(start))
     except ValueError as error:
@@ -282,7 +282,7 @@ def _read_range(field: Field, written: Between | Mapping, grid: bool) -> Any:
     if points is None:
         return Between(start, stop, spacing == "log")
     try:
-        whole(f"{path}.points", points, 2, MOST_RUNS)
+        check_whole(f"{path}.points", points, 2, MOST_RUNS)
     except ValueError as error:
         raise ConfigError([str(error)]) from None
     return (np.geomspace if spacing == "log" else np.linspace)(start, stop, points)

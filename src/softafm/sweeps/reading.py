@@ -6,8 +6,8 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
-from softafm.checks.refusals import ConfigError, nearest, one_of, shown
-from softafm.experiment.fields import field_of, plain_field
+from softafm.checks.refusals import ConfigError, join_with_or, show, suggest
+from softafm.experiment.fields import find_field, make_plain_field
 from softafm.experiment.takers import refuse_unless
 from softafm.modes import MODES
 from softafm.sweeps.campaign import (
@@ -43,11 +43,11 @@ class Table:
 def read_table(written: Any) -> Table:
     """Read ``[sweep]``; ConfigError if it has other keys, or values of another kind."""
     if not isinstance(written, Mapping):
-        raise ConfigError([f"sweep = {shown(written)}: must be a table, [sweep]"])
+        raise ConfigError([f"sweep = {show(written)}: must be a table, [sweep]"])
     known = [*(field.name for field in fields(Table)), "together"]
     for key in written:
         if key not in known:
-            raise ConfigError([f"sweep.{key}: unknown key; {nearest(key, known)}"])
+            raise ConfigError([f"sweep.{key}: unknown key; {suggest(key, known)}"])
     kinds: dict[str, tuple[Any, str]] = {
         "vary": (Mapping, "a table, [sweep.vary]"),
         "together": (list, "tables, [[sweep.together]]"),
@@ -56,13 +56,13 @@ def read_table(written: Any) -> Table:
     }
     for key, (kind, valid) in kinds.items():
         if key in written and not isinstance(written[key], kind):
-            raise ConfigError([f"sweep.{key} = {shown(written[key])}: must be {valid}"])
+            raise ConfigError([f"sweep.{key} = {show(written[key])}: must be {valid}"])
     values = {key: value for key, value in written.items() if key != "together"}
     vary = dict(_flatten(written.get("vary", {})))
     for index, group in enumerate(written.get("together", [])):
         if not isinstance(group, Mapping) or not group:
             raise ConfigError(
-                [f"sweep.together[{index}] = {shown(group)}: must be a table of fields and values"]
+                [f"sweep.together[{index}] = {show(group)}: must be a table of fields and values"]
             )
         group = dict(_flatten(group))
         vary[tuple(group)] = list(group.values())
@@ -101,16 +101,16 @@ def make_campaign(
             ]
         )
     if isinstance(table.observables, str):
-        raise ConfigError([f"sweep.observables = {shown(table.observables)}: must be a list"])
+        raise ConfigError([f"sweep.observables = {show(table.observables)}: must be a list"])
     kind, seed = table.design or "grid", table.seed or 0
     design = partial(make_design, kind, table.vary, samples=table.samples, seed=seed)
     if callable(what):
-        return plan_calls(what, design(plain_field), table.observables)
+        return plan_calls(what, design(make_plain_field), table.observables)
     mode = what.get("mode")
     if mode is None:
-        raise ConfigError([f"mode: missing; must be {one_of(list(MODES))}"])
+        raise ConfigError([f"mode: missing; must be {join_with_or(list(MODES))}"])
     if not isinstance(mode, str) or mode not in MODES:
-        raise ConfigError([f"mode = {shown(mode)}: {nearest(mode, list(MODES))}"])
+        raise ConfigError([f"mode = {show(mode)}: {suggest(mode, list(MODES))}"])
     paths = [p for key in table.vary for p in (key if isinstance(key, tuple) else (key,))]
     field = partial(_find_field, what, paths, folder, not from_file)
     taken = [*MODES[mode].observed, *MODES[mode].axes.dims, "sample"]
@@ -118,4 +118,4 @@ def make_campaign(
 
 
 def _find_field(document, varied, folder, bare, path):
-    return field_of(document, path, varied, folder, bare)
+    return find_field(document, path, varied, folder, bare)

@@ -19,7 +19,7 @@ from typing import Any
 
 import numpy as np
 
-from softafm.checks.refusals import shown
+from softafm.checks.refusals import show
 from softafm.sweeps.block import DONE, FAILED, UNKNOWN, WARNED, Block
 from softafm.sweeps.campaign import Campaign, Observable
 from softafm.sweeps.extra import require
@@ -469,4 +469,4 @@ def _find_difference(begun: Any, ours: Any, path: str) -> str | None:
             if (found := _find_difference(begun[key], ours[key], name)) is not None:
                 return found
         return None
-    return None if begun == ours else f"{path} is {shown(ours)}, and was {shown(begun)}"
+    return None if begun == ours else f"{path} is {show(ours)}, and was {show(begun)}"

@@ -12,7 +12,7 @@ from os import scandir
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from softafm.checks.refusals import shown
+from softafm.checks.refusals import show
 
 FORMAT = "softafm sweep 1"
 _LARGEST_TEXT = 50_000_000
@@ -111,12 +111,12 @@ def _count_blocks(size: int, block: int) -> int:
 
 def _refuse_array(name: str, array: Mapping[str, Any], attributes: Mapping[str, Any]) -> None:
     if not name.isprintable() or name.startswith(".") or re.search(r"[/\\:]", name):
-        raise StoreError(f"has an array named {shown(name)}")
+        raise StoreError(f"has an array named {show(name)}")
     shape, chunks = array["shape"], array["chunks"]
     whole = all(type(size) is int and size >= 0 for size in shape)
     whole = whole and all((type(size) is int and size > 0) or size == 0 in shape for size in chunks)
     if not whole or len(shape) != len(chunks) or len(shape) > _MOST_DIMENSIONS:
-        raise StoreError(f"its array '{name}' has the shape {shown(shape)} in {shown(chunks)}")
+        raise StoreError(f"its array '{name}' has the shape {show(shape)} in {show(chunks)}")
     texts = array["dtype"] == "|O"
     filters = [{"id": "vlen-utf8"}] if texts else None
     known = texts or _NUMBERS.fullmatch(array["dtype"])
@@ -134,7 +134,7 @@ def _refuse_array(name: str, array: Mapping[str, Any], attributes: Mapping[str, 
     ):
         raise StoreError(f"its array '{name}' is described in a way that softafm does not write")
     if " since " in words[0]:
-        raise StoreError(f"its array '{name}' has the unit {shown(words[0])}")
+        raise StoreError(f"its array '{name}' has the unit {show(words[0])}")
 
 
 def _refuse_links(path: Path, arrays: Mapping[str, Any]) -> None:

@@ -10,9 +10,9 @@ from time import time
 from typing import TYPE_CHECKING, Any
 
 from softafm.checks.refusals import ConfigError
-from softafm.checks.validate import whole
+from softafm.checks.validate import check_whole
 from softafm.experiment.config import load_document, set_value
-from softafm.progress import Progress, reporting
+from softafm.progress import Progress, make_reporter
 from softafm.sweeps.block import FAILED, Block, Work
 from softafm.sweeps.campaign import Campaign
 from softafm.sweeps.execution import Halted, carry_out, count_cores
@@ -193,11 +193,11 @@ def prepare(
     if scheduler is not None and "://" not in scheduler:
         raise ConfigError([f"scheduler = {scheduler}: must be an address, such as tcp://host:8786"])
     if workers is not None:
-        whole("workers", workers, 0, 10_000)
+        check_whole("workers", workers, 0, 10_000)
         if scheduler is not None:
             raise ConfigError([f"workers = {workers}: those of {scheduler} are its own; leave it"])
     if batch is not None:
-        whole("sweep.batch", batch, 1, 1_000_000)
+        check_whole("sweep.batch", batch, 1, 1_000_000)
     for name in (*(o.name for o in campaign.observables), *campaign.coordinates):
         if name in RESERVED:
             raise ConfigError([f"'{name}': is a name that every store uses; choose another"])
@@ -213,7 +213,7 @@ def finish(
 ) -> None:
     """Do all runs that a store lacks."""
     work = Work(campaign.run, {o.name: o.shape for o in campaign.observables})
-    with store.writing(), reporting(progress) as report:
+    with store.writing(), make_reporter(progress) as report:
         missing = store.missing()
         left = sum(prod(map(len, store.ranges(number))) for number in missing)
         begun, done, failed = time(), 0, 0

@@ -2,12 +2,12 @@
 
 from math import degrees, pi
 
-from softafm.checks.validate import finite
+from softafm.checks.validate import check_finite
 
 
 def check_half_angle(value: float) -> float:
     """Return the half angle of a cone, rad, if it lies between 0 and π/2."""
-    angle = finite("half_angle", value, "rad")
+    angle = check_finite("half_angle", value, "rad")
     if not 0 < angle < pi / 2:
         raise ValueError(
             f"half_angle = {angle:g} rad: must be above 0 and below pi/2 rad, that is 90 degrees "

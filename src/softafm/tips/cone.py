@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 from typing import ClassVar
 
-from softafm.checks.validate import positive
+from softafm.checks.validate import check_positive
 from softafm.compiled.formulas import Term
 from softafm.tips.angles import check_half_angle
 from softafm.tips.arc import arc_and_flank, flank
@@ -38,7 +38,9 @@ class Cone(Tip):
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "half_angle", check_half_angle(self.half_angle))
-        object.__setattr__(self, "apex_radius", positive("apex_radius", self.apex_radius, "m"))
+        object.__setattr__(
+            self, "apex_radius", check_positive("apex_radius", self.apex_radius, "m")
+        )
 
     @property
     def term(self) -> Term:

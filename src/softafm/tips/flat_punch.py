@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 from typing import ClassVar
 
-from softafm.checks.validate import positive
+from softafm.checks.validate import check_positive
 from softafm.compiled.formulas import Term
 from softafm.tips.arc import JOIN, SLOPE, arc_and_flank
 from softafm.tips.tip import Tip
@@ -42,8 +42,8 @@ class FlatPunch(Tip):
     edge_radius: float
 
     def __post_init__(self) -> None:
-        radius = positive("radius", self.radius, "m")
-        edge = positive("edge_radius", self.edge_radius, "m")
+        radius = check_positive("radius", self.radius, "m")
+        edge = check_positive("edge_radius", self.edge_radius, "m")
         if edge > radius:
             raise ValueError(
                 f"edge_radius = {edge:g} m: must be at most radius = {radius:g} m (equal to it, "

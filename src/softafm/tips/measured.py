@@ -6,7 +6,7 @@ from typing import ClassVar
 
 import numpy as np
 
-from softafm.checks.validate import numbers
+from softafm.checks.validate import check_numbers
 from softafm.compiled.formulas import Term
 from softafm.tips.tip import Tip
 
@@ -43,7 +43,7 @@ class MeasuredTip(Tip):
     height: tuple[float, ...]
 
     def __post_init__(self) -> None:
-        r, height = numbers("r", self.r, "m"), numbers("height", self.height, "m")
+        r, height = check_numbers("r", self.r, "m"), check_numbers("height", self.height, "m")
         _refuse_what_is_no_profile(r, height)
         object.__setattr__(self, "r", r)
         object.__setattr__(self, "height", height)

@@ -6,7 +6,7 @@ from typing import ClassVar
 
 import numpy as np
 
-from softafm.checks.validate import positive
+from softafm.checks.validate import check_positive
 from softafm.compiled.formulas import Term
 from softafm.tips.tip import Tip, check_height
 
@@ -34,7 +34,7 @@ class Paraboloid(Tip):
     radius: float
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "radius", positive("radius", self.radius, "m"))
+        object.__setattr__(self, "radius", check_positive("radius", self.radius, "m"))
 
     @property
     def term(self) -> Term:

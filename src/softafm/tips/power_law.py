@@ -5,7 +5,7 @@ from typing import ClassVar
 
 import numpy as np
 
-from softafm.checks.validate import finite, positive
+from softafm.checks.validate import check_finite, check_positive
 from softafm.compiled.formulas import Term
 from softafm.tips.tip import Tip, check_height
 
@@ -47,15 +47,15 @@ class PowerLawTip(Tip):
     radius: float
 
     def __post_init__(self) -> None:
-        exponent = finite("exponent", self.exponent, "")
+        exponent = check_finite("exponent", self.exponent, "")
         if not 2 <= exponent <= _LARGEST:
             raise ValueError(
                 f"exponent = {exponent:g}: must be from 2 to {_LARGEST:g} (below 2 the apex would "
                 "be infinitely sharp: take a Cone or a Hyperboloid; for more take a FlatPunch)"
             )
         object.__setattr__(self, "exponent", exponent)
-        object.__setattr__(self, "height", positive("height", self.height, "m"))
-        object.__setattr__(self, "radius", positive("radius", self.radius, "m"))
+        object.__setattr__(self, "height", check_positive("height", self.height, "m"))
+        object.__setattr__(self, "radius", check_positive("radius", self.radius, "m"))
 
     @property
     def term(self) -> Term:

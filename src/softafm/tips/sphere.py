@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 from typing import ClassVar
 
-from softafm.checks.validate import positive
+from softafm.checks.validate import check_positive
 from softafm.compiled.formulas import Term
 from softafm.tips.arc import JOIN, SLOPE, arc_and_flank
 from softafm.tips.tip import Tip
@@ -37,7 +37,7 @@ class Sphere(Tip):
     radius: float
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "radius", positive("radius", self.radius, "m"))
+        object.__setattr__(self, "radius", check_positive("radius", self.radius, "m"))
 
     @property
     def term(self) -> Term:

@@ -7,7 +7,7 @@ from typing import Any, ClassVar
 import numpy as np
 from numpy.typing import ArrayLike
 
-from softafm.checks.validate import finite
+from softafm.checks.validate import check_finite
 from softafm.compiled.formulas import Term
 
 _FIRST_RADIUS = 1e-12
@@ -90,7 +90,7 @@ class Tip(ABC):
 
 def check_height(value: float) -> float:
     """Return a height above the apex (m) if it is a finite number that is not negative."""
-    height = finite("height", value, "m")
+    height = check_finite("height", value, "m")
     if height < 0:
         raise ValueError(f"height = {height:g} m: must not be below the apex, at 0 m")
     return height

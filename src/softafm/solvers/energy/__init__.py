@@ -1,5 +1,5 @@
 """The default solver: implicit energy-minimising steps on a mesh that follows the contact edge."""
 
-from softafm.solvers.energy.solver import Energy, cohesive_lengths_crossed
+from softafm.solvers.energy.solver import Energy, count_cohesive_lengths
 
-__all__ = ["Energy", "cohesive_lengths_crossed"]
+__all__ = ["Energy", "count_cohesive_lengths"]

@@ -3,13 +3,13 @@
 from numba import float64, int64
 
 from softafm.compiled.dense import factorise, multiply, solve_factorised
-from softafm.compiled.functions import POTENTIAL, PRESSURE, compile_for, inlined, pointer
-from softafm.solvers.energy.equilibrium import assemble, beyond_mesh
+from softafm.compiled.functions import POTENTIAL, PRESSURE, compile_for, inline, pointer_to
+from softafm.solvers.energy.equilibrium import assemble, integrate_beyond_mesh
 from softafm.solvers.energy.layout import MESH, ROOM, VECTOR
 from softafm.solvers.energy.tuning import LARGEST_DESCENT, MOST_DESCENTS, SUFFICIENT
 
 
-@inlined
+@inline
 def _find_way_down(
     gradient, gap, mesh, scale, slope, shift, border, steepest, size, hessian, change
 ):  # fmt: skip
@@ -36,7 +36,7 @@ def _find_way_down(
     return shift, largest, downhill
 
 
-@inlined
+@inline
 def _search_line(
     u, v, change, value, downhill, standoff, lever, tail, mesh, scale, potential, parameters, rows
 ):  # fmt: skip
@@ -64,7 +64,7 @@ def _search_line(
 @compile_for(
     int64(
         VECTOR, VECTOR, float64, VECTOR, float64, VECTOR,
-        MESH, pointer(PRESSURE), pointer(POTENTIAL), VECTOR, float64, ROOM,
+        MESH, pointer_to(PRESSURE), pointer_to(POTENTIAL), VECTOR, float64, ROOM,
     ),
 )  # fmt: skip
 def descend(u, v, ac, standoff, lever, rise, mesh, law, potential, parameters, accuracy, room):
@@ -90,7 +90,7 @@ def descend(u, v, ac, standoff, lever, rise, mesh, law, potential, parameters, a
         multiply(mesh.stiffness, trial, strain)
         tail, border = 0.0, lever
         if size > n:
-            tail, draw = beyond_mesh(gap[n - 1], rise, mesh, law, parameters, far_work)
+            tail, draw = integrate_beyond_mesh(gap[n - 1], rise, mesh, law, parameters, far_work)
             border += draw
         value, steepest = 0.5 * lever * u[n] * u[n] - tail * u[n], 0.0
         gradient[n] = lever * u[n] - tail

@@ -14,7 +14,7 @@ from math import inf, pi
 from numba import float64, int64
 
 from softafm.compiled.dense import factorise, multiply, solve_factorised
-from softafm.compiled.functions import PRESSURE, PROFILE, compile_for, inlined, pointer
+from softafm.compiled.functions import PRESSURE, PROFILE, compile_for, inline, pointer_to
 from softafm.solvers.energy.layout import CLOCK, MATRIX, MESH, VECTOR
 from softafm.solvers.energy.tuning import (
     FARTHEST_GUESS,
@@ -43,8 +43,8 @@ def assemble(mesh, scale, slope, shift, lever, hessian):
     hessian[n, n] = total + shift
 
 
-@compile_for((float64, VECTOR, MESH, pointer(PRESSURE), VECTOR, MATRIX))
-def beyond_mesh(gap, rise, mesh, law, parameters, work):
+@compile_for((float64, VECTOR, MESH, pointer_to(PRESSURE), VECTOR, MATRIX))
+def integrate_beyond_mesh(gap, rise, mesh, law, parameters, work):
     """Force that acts beyond the last node and minus its derivative with the gap, both over 2πa².
 
     ``gap`` is that at the last node. There the surface counts as flat, and the gap grows by
@@ -61,7 +61,7 @@ def beyond_mesh(gap, rise, mesh, law, parameters, work):
     return force, stiffness
 
 
-@inlined
+@inline
 def _fall_of_energy(u, v, scale, mesh, pressure, change):
     """Write minus the gradient of Π/(2πa²) into ``change``, its last entry without the lever."""
     n = pressure.size
@@ -76,7 +76,7 @@ def _fall_of_energy(u, v, scale, mesh, pressure, change):
         change[n] += push
 
 
-@inlined
+@inline
 def _move_surface(u, change, standoff, gap, pressure, slope):
     """Add a change to the shape and the deflection, and to first order to the pressure."""
     n = pressure.size
@@ -88,7 +88,7 @@ def _move_surface(u, change, standoff, gap, pressure, slope):
         pressure[i] += slope[i] * (change[n] - change[i])
 
 
-@inlined
+@inline
 def _missed_force(mesh, exact, pressure):
     """Sums over the mesh of |exact − pressure| and |exact|."""
     missed, whole = 0.0, 0.0
@@ -101,7 +101,7 @@ def _missed_force(mesh, exact, pressure):
 @compile_for(
     int64(
         VECTOR, VECTOR, float64, VECTOR, float64, float64, VECTOR,
-        MESH, pointer(PRESSURE), VECTOR, float64, float64, CLOCK, MATRIX, MATRIX, MATRIX,
+        MESH, pointer_to(PRESSURE), VECTOR, float64, float64, CLOCK, MATRIX, MATRIX, MATRIX,
     ),
 )  # fmt: skip
 def equilibrate(
@@ -112,8 +112,8 @@ def equilibrate(
 
     ``ac`` is frame radius times compliance, ``standoff`` the gap to the flat surface of an unbent
     lever. Its deflection q balances ``lever``·(q − ``rest``) against the force, of which some acts
-    beyond the mesh (see ``beyond_mesh``); ``lever`` 0 holds q still. Leaves the gap and the
-    pressure in rows 0 and 1 of ``work``. Returns the iterations, negative if no stable shape was
+    beyond the mesh (see ``integrate_beyond_mesh``); ``lever`` 0 holds q still. Leaves the gap and
+    the pressure in rows 0 and 1 of ``work``. Returns the iterations, negative if no stable shape was
     near the guess (an indefinite Hessian, or no convergence).
     """
     n = standoff.size
@@ -130,7 +130,7 @@ def equilibrate(
         _fall_of_energy(u, v, scale, mesh, pressure, change)
         border = lever
         if size > n:
-            tail, draw = beyond_mesh(gap[n - 1], rise, mesh, law, parameters, far_work)
+            tail, draw = integrate_beyond_mesh(gap[n - 1], rise, mesh, law, parameters, far_work)
             change[n] += tail - lever * (u[n] - rest)
             border += draw
         assemble(mesh, scale, slope, 0.0, border, hessian)
@@ -159,11 +159,11 @@ def equilibrate(
     return -MOST_ITERATIONS
 
 
-@compile_for(float64(VECTOR, VECTOR, VECTOR, MESH, float64, pointer(PRESSURE), VECTOR, MATRIX))
+@compile_for(float64(VECTOR, VECTOR, VECTOR, MESH, float64, pointer_to(PRESSURE), VECTOR, MATRIX))
 def tip_force(pressure, gap, rise, mesh, frame, law, parameters, far_work):
     """Force on the tip, N: the mesh's share and that of the flat surface beyond it."""
     n = gap.size
-    total, _ = beyond_mesh(gap[n - 1], rise, mesh, law, parameters, far_work)
+    total, _ = integrate_beyond_mesh(gap[n - 1], rise, mesh, law, parameters, far_work)
     for i in range(n):
         total += mesh.masses[i] * pressure[i]
     return 2.0 * pi * frame * frame * total
@@ -178,7 +178,7 @@ def spring_constant(stiffness, frame):
     return stiffness / (2.0 * pi * frame * frame) if stiffness < inf else 0.0
 
 
-@compile_for((pointer(PROFILE), VECTOR, MESH, float64, VECTOR, VECTOR, VECTOR))
+@compile_for((pointer_to(PROFILE), VECTOR, MESH, float64, VECTOR, VECTOR, VECTOR))
 def raise_tip(profile, parameters, mesh, frame, scratch, tip, rise):
     """Heights of the tip above its apex at the nodes, and above the last node beyond the mesh."""
     n, far = mesh.nodes.size, mesh.far.size

@@ -112,7 +112,7 @@ def reframe(fields, mesh, frame, stretch, work, out):
 
 
 @compile_for(float64(VECTOR, CONSTANT_VECTOR, float64))
-def radius_of_gap(gap, nodes, value):
+def find_radius(gap, nodes, value):
     """Smallest radius (in units of the frame) where the gap reaches ``value``."""
     if gap[0] >= value:
         return 0.0
@@ -124,14 +124,14 @@ def radius_of_gap(gap, nodes, value):
 
 
 @compile_for(float64(float64, float64))
-def frame_for(edge, open_frame):
+def choose_frame(edge, open_frame):
     """Frame radius that suits a contact edge; a contact too small to fill the field of attraction
     is seen from a wider frame, ``open_frame`` when there is none."""
     return max(edge, open_frame - OPENING * edge)
 
 
 @compile_for(float64(float64, CLOCK, MESH, CONTROLS))
-def following_frame(step, clock, mesh, controls):
+def follow_edge(step, clock, mesh, controls):
     """Frame radius for the next step, which rides along with the edge.
 
     It moves as far as the edge will, and makes up for what it lags while the edge passes the
@@ -142,10 +142,10 @@ def following_frame(step, clock, mesh, controls):
         return frame
     ahead = (edge - clock.edge_earlier) * step / clock.taken
     ahead = min(max(ahead, -FARTHEST_RIDE * edge), FARTHEST_RIDE * edge)
-    suited = frame_for(edge, controls.open_frame)
+    suited = choose_frame(edge, controls.open_frame)
     node = mesh.edge_spacing * frame
     if abs(ahead) < AT_REST * node and abs(suited - frame) < controls.slack * node:
         return frame
     pace = min(1.0, abs(ahead) / (controls.slack * node))
-    ridden = frame + frame_for(edge + ahead, controls.open_frame) - suited
+    ridden = frame + choose_frame(edge + ahead, controls.open_frame) - suited
     return max(ridden + pace * (suited - frame), SMALLEST_FRAME * frame)

@@ -82,7 +82,7 @@ class Mesh(NamedTuple):
     decay: float
 
 
-def mesh_of(mesh: UnitMesh, stiffness: np.ndarray, decay: float) -> Mesh:
+def make_mesh(mesh: UnitMesh, stiffness: np.ndarray, decay: float) -> Mesh:
     """Return a mesh with the stiffness and the ``decay``, 1/m, of a body, for the kernels."""
     return Mesh(
         mesh.nodes, mesh.masses, stiffness, mesh.edge_spacing, mesh.growth, mesh.far,

@@ -4,7 +4,7 @@ from math import exp, pi
 
 from numba import float64, int64
 
-from softafm.compiled.functions import compile_for, inlined
+from softafm.compiled.functions import compile_for, inline
 from softafm.solvers.energy.frame import transfer
 from softafm.solvers.energy.layout import BACKGROUND, CONSTANT_VECTOR, MATRIX, VECTOR
 from softafm.solvers.energy.tuning import DAMPING, RINGING, SHORT, STIFF
@@ -14,7 +14,7 @@ DECAY, EARLIER, NOW, NEW, CURVATURE = range(5)
 
 
 @compile_for((float64, float64, int64, VECTOR, VECTOR, MATRIX))
-def memory_weights(step, last, order, compliance, retardation, weights):
+def find_memory_weights(step, last, order, compliance, retardation, weights):
     """Weights of y⁺ = decay·y + earlier·q₋ + now·q + new·q⁺ over a step, one row per element.
 
     Exact for q linear in time, or with ``order`` 2, quadratic through the instant ``last`` before.
@@ -74,7 +74,7 @@ def recall(background, time, frame, retardation, nodes, work, memory):
             memory[m, i] *= fading
 
 
-@inlined
+@inline
 def displace_by_memory(compliance, weights, load_earlier, load, memory, old, v):
     """Carry the memory over a step as far as it is known; return the compliance of the step.
 
@@ -98,7 +98,7 @@ def displace_by_memory(compliance, weights, load_earlier, load, memory, old, v):
     return total
 
 
-@inlined
+@inline
 def dissipated_power(frame, compliance, retardation, lags, strained):
     """Power that the dashpots of all elements take, W, by the lags q − y_m and S times them."""
     elements, n = lags.shape

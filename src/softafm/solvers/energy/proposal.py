@@ -7,7 +7,7 @@ from numba import float64, int64
 
 from softafm.compiled.functions import (
     compile_for,
-    inlined,
+    inline,
 )
 from softafm.solvers.energy.equilibrium import raise_tip, spring_constant
 from softafm.solvers.energy.frame import reframe
@@ -24,7 +24,7 @@ from softafm.solvers.energy.layout import (
 )  # fmt: skip
 from softafm.solvers.energy.memory import (
     displace_by_memory,
-    memory_weights,
+    find_memory_weights,
     recall,
 )  # fmt: skip
 from softafm.solvers.energy.tuning import (
@@ -78,7 +78,7 @@ class Trial(NamedTuple):
     history: int
 
 
-@inlined
+@inline
 def furnish(room):
     """Return the views of a room that a step works in."""
     rows, fields, n, m = room.rows, room.fields, room.fields.shape[1], room.weights.shape[0] - 1
@@ -90,7 +90,7 @@ def furnish(room):
     )  # fmt: skip
 
 
-@inlined
+@inline
 def choose_step(clock, controls, left):
     """Length of the next step, s, of which ``left`` are left; the last two are of equal length."""
     step = min(clock.step, controls.longest_step)
@@ -103,7 +103,7 @@ def choose_step(clock, controls, left):
 
 
 @compile_for((int64, float64, float64, float64, VECTOR))
-def extrapolation_weights(history, step, last, before, weights):
+def find_extrapolation_weights(history, step, last, before, weights):
     """Weights of the last shapes that extrapolate them by ``step``: order ``history`` − 1."""
     weights[0], weights[1], weights[2] = 1.0, 0.0, 0.0
     if history == 2:
@@ -134,7 +134,7 @@ def predict(frame, step, history, fields, clock, mesh, weights, guess, work, sha
             guess[i] += weights[k] * shape[0, i]
 
 
-@inlined
+@inline
 def propose(
     step, frame, height, profile, respond, parameters, background, mesh, fields, clock,
     lever_state, work,
@@ -154,7 +154,7 @@ def propose(
     else:
         for i in range(n):
             work.load_earlier[0, i] = 0.0
-    memory_weights(
+    find_memory_weights(
         step, clock.taken, order, parameters.compliance, parameters.retardation, work.weights
     )
     time = clock.time + step
@@ -168,7 +168,7 @@ def propose(
     for i in range(n):
         work.standoff[i] = h0 - parameters.law[ORIGIN] + work.tip[i]
 
-    extrapolation_weights(history, step, clock.taken, clock.taken_earlier, work.past_weights)
+    find_extrapolation_weights(history, step, clock.taken, clock.taken_earlier, work.past_weights)
     predict(
         frame, step, history, fields, clock, mesh, work.past_weights, work.guess, work.shifting,
         work.shape,

@@ -42,7 +42,7 @@ from softafm.solvers.energy.tuning import (
 )
 from softafm.solvers.history import History
 from softafm.solvers.periodic import PeriodicMemory
-from softafm.solvers.shapes import Shape, on_common_radii
+from softafm.solvers.shapes import Shape, interpolate_to_common_radii
 
 _CHUNK = 256
 """Records that one call of the compiled loop may fill."""
@@ -277,7 +277,7 @@ class Run:
             motion=self.motion,
             jump_time=time[jumped],
             jump_energy=records["jump"][jumped],
-            profiles=None if self.shapes is None else on_common_radii(self.shapes),
+            profiles=None if self.shapes is None else interpolate_to_common_radii(self.shapes),
             diagnostics={
                 "steps": time.size - 1,
                 "attempted_steps": int(surface.clock["tries"]),

@@ -5,11 +5,11 @@ from time import perf_counter
 from typing import Any, ClassVar
 
 from softafm.checks.callers import warn_caller
-from softafm.checks.validate import finite, positive
-from softafm.compiled.announce import announced_compilation
-from softafm.instrument.lever import Lever, check_lever, lever_of
+from softafm.checks.validate import check_finite, check_positive
+from softafm.compiled.announce import announce_compilation
+from softafm.instrument.lever import Lever, check_lever, make_lever
 from softafm.instrument.motion import count_periods, is_steady
-from softafm.instrument.motions import lowest_height
+from softafm.instrument.motions import find_lowest_height
 from softafm.progress import Progress
 from softafm.solvers.history import History
 
@@ -44,10 +44,10 @@ class Energy:
     most_steps: int = 2_000_000
 
     def __post_init__(self) -> None:
-        spacing = positive("finest_spacing", self.finest_spacing, "contact radii")
+        spacing = check_positive("finest_spacing", self.finest_spacing, "contact radii")
         if spacing > 0.3:
             raise ValueError(f"finest_spacing = {spacing:g} contact radii: must be at most 0.3")
-        if finite("most_steps", self.most_steps, "steps") < 1:
+        if check_finite("most_steps", self.most_steps, "steps") < 1:
             raise ValueError(f"most_steps = {self.most_steps!r} steps: must be at least 1")
 
     def solve(
@@ -87,14 +87,14 @@ class Energy:
             If ``most_steps`` do not suffice or no stable shape is found.
         """
         if lever is None:
-            lever = lever_of(stiffness)
+            lever = make_lever(stiffness)
         elif stiffness is not None:
             raise ValueError(
                 f"stiffness = {stiffness:g} N/m: must be left out where there is a lever"
             )
         check_lever(lever)
         started = perf_counter()
-        with announced_compilation(self.kind):
+        with announce_compilation(self.kind):
             from softafm.solvers.energy.run import Run
 
             run = Run(self, contact, motion, lever, tolerance, profiles)
@@ -109,10 +109,10 @@ class Energy:
     def expected_seconds(self, contact: Any, motion: Any) -> float:
         """Order of magnitude of a run at the default tolerance, s on one core, as measured."""
         cycles = count_periods(motion)
-        return 4e-3 * cycles + 2e-5 * cohesive_lengths_crossed(contact, motion)
+        return 4e-3 * cycles + 2e-5 * count_cohesive_lengths(contact, motion)
 
 
-def cohesive_lengths_crossed(contact, motion) -> float:
+def count_cohesive_lengths(contact, motion) -> float:
     """Return how many cohesive lengths the contact edge crosses at most, in and out each cycle.
 
     None without adhesion. The modulus is what the motion leaves of it, the softened one at
@@ -120,7 +120,7 @@ def cohesive_lengths_crossed(contact, motion) -> float:
     """
     if not contact.adhesive:
         return 0.0
-    law, radius = contact.surface, contact.contact_radius(lowest_height(motion))
+    law, radius = contact.surface, contact.contact_radius(find_lowest_height(motion))
     modulus = contact.softened_modulus
     if not is_steady(motion):
         duration = float(motion.breaks[-1] - motion.breaks[0])

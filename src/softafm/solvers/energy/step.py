@@ -6,7 +6,7 @@ an equilibrium, and their difference, with the error of the memory, sets the len
 
 from numba import float64, int64, types
 
-from softafm.compiled.dense import multiply, row_products, solve_factorised
+from softafm.compiled.dense import multiply, multiply_rows, solve_factorised
 from softafm.compiled.functions import (
     ACCEPTANCE,
     HEIGHT,
@@ -14,11 +14,11 @@ from softafm.compiled.functions import (
     PROFILE,
     RESPONSE,
     compile_for,
-    inlined,
-    pointer,
+    inline,
+    pointer_to,
 )
 from softafm.solvers.energy.equilibrium import equilibrate, tip_force
-from softafm.solvers.energy.frame import following_frame, radius_of_gap
+from softafm.solvers.energy.frame import find_radius, follow_edge
 from softafm.solvers.energy.layout import (
     BACKGROUND,
     CLOCK,
@@ -63,7 +63,7 @@ from softafm.solvers.energy.tuning import (
 )  # fmt: skip
 
 
-@inlined
+@inline
 def solve(trial, law, parameters, mesh, controls, clock, work):
     """Bring surface and lever into equilibrium, with the load; whether a stable shape was near."""
     iterations = equilibrate(
@@ -78,7 +78,7 @@ def solve(trial, law, parameters, mesh, controls, clock, work):
     return iterations > 0
 
 
-@inlined
+@inline
 def judge(trial, force, parameters, mesh, controls, clock, work):
     """Error of a solved step, in units of the one aimed at."""
     n, elements = mesh.nodes.size, parameters.retardation.size
@@ -113,7 +113,7 @@ def judge(trial, force, parameters, mesh, controls, clock, work):
     return max(error, abs(force - foreseen) / (controls.force * scale))
 
 
-@inlined
+@inline
 def accept(trial, force, growth, parameters, mesh, controls, fields, clock, work, record):
     """Make a step's end the state, and write it into a record."""
     n, elements = mesh.nodes.size, parameters.retardation.size
@@ -123,14 +123,14 @@ def accept(trial, force, growth, parameters, mesh, controls, fields, clock, work
             memory[m, i] += work.weights[m, NEW] * work.load_new[i]
             work.lags[m, i] = work.load_new[i] - memory[m, i] - work.old[m, i]
             fields[MEMORY + m, i] = memory[m, i]
-    row_products(work.lags, mesh.stiffness, work.strained)
+    multiply_rows(work.lags, mesh.stiffness, work.strained)
     for i in range(n):
         fields[EARLIEST, i] = fields[EARLIER, i]
         fields[EARLIER, i] = fields[DEFORMATION, i]
         fields[DEFORMATION, i] = work.u[i]
         fields[LOAD_EARLIER, i] = fields[LOAD, i]
         fields[LOAD, i] = work.load_new[i]
-    edge = frame * radius_of_gap(gap, mesh.nodes, controls.edge_gap)
+    edge = frame * find_radius(gap, mesh.nodes, controls.edge_gap)
     move_clock(clock, trial.step, frame, edge, force, work.u[n])
     clock.step = max(
         trial.step * min(MOST_GROWTH, max(LEAST_GROWTH, growth)), 0.999 * controls.shortest_step
@@ -146,7 +146,7 @@ def accept(trial, force, growth, parameters, mesh, controls, fields, clock, work
     # The cohesive zone as it is now: where the gap opens outside the edge.
     record.coarseness = 0.0
     if edge > 0.0:
-        zone = frame * radius_of_gap(gap, mesh.nodes, controls.open_gap) - edge
+        zone = frame * find_radius(gap, mesh.nodes, controls.open_gap) - edge
         record.coarseness = frame * mesh.edge_spacing / max(zone, 1e-9 * frame)
     record.frame, record.jump = frame, 0.0
 
@@ -165,9 +165,9 @@ def move_clock(clock, step, frame, edge, force, deflection):
 
 @compile_for(
     types.UniTuple(int64, 2)(
-        pointer(HEIGHT), pointer(PROFILE), pointer(PRESSURE), pointer(RESPONSE),
-        pointer(ACCEPTANCE), PARAMETERS, BACKGROUND, MESH, TABLE, CONTROLS, MATRIX, CLOCK, VECTOR,
-        RECORDS, MATRIX, ROOM,
+        pointer_to(HEIGHT), pointer_to(PROFILE), pointer_to(PRESSURE), pointer_to(RESPONSE),
+        pointer_to(ACCEPTANCE), PARAMETERS, BACKGROUND, MESH, TABLE, CONTROLS, MATRIX, CLOCK,
+        VECTOR, RECORDS, MATRIX, ROOM,
     ),
 )  # fmt: skip
 def advance(
@@ -194,7 +194,7 @@ def advance(
         if clock.tries >= controls.most_tries:
             return STUCK, count
         step = choose_step(clock, controls, left)
-        frame = following_frame(step, clock, mesh, controls)
+        frame = follow_edge(step, clock, mesh, controls)
         if frame != tabulated:
             if not find_stiffness(table, frame):
                 clock.wanted = frame

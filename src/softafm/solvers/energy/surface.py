@@ -9,7 +9,7 @@ from softafm.bodies.stiffness import STEP, Stiffness
 from softafm.errors import DivergedError
 from softafm.solvers.energy.descent import descend
 from softafm.solvers.energy.equilibrium import raise_tip, tip_force
-from softafm.solvers.energy.frame import frame_for, radius_of_gap, transfer
+from softafm.solvers.energy.frame import choose_frame, find_radius, transfer
 from softafm.solvers.energy.layout import (
     DEFORMATION,
     LOAD,
@@ -20,7 +20,7 @@ from softafm.solvers.energy.layout import (
     Parameters,
     Room,
     Table,
-    mesh_of,
+    make_mesh,
     new_clock,
     new_room,
 )
@@ -67,7 +67,7 @@ class Surface:
             lever_parameters,
         )
         self.lever, self.lever_state = lever, lever.at_start()
-        origin = gap_origin(contact)
+        origin = find_gap_origin(contact)
         law_parameters[ORIGIN] = origin
         self.edge_gap = contact.edge_gap - origin
         # Where the cohesive zone ends: of a Lennard-Jones law the gap is twice that at the edge.
@@ -94,7 +94,7 @@ class Surface:
         self.clock["time"] = breaks[0]
         self.clock["contraction"] = 0.0 if slack < 2 else np.inf
         first = contact.contact_radius(float(motion.height(breaks[0])))
-        self.clock["frame"] = frame_for(first, self.open_frame)
+        self.clock["frame"] = choose_frame(first, self.open_frame)
         self.background = Background(np.empty((0, 0)), 1.0, 1.0, 1.0, 1.0, 0.0, 0.0)
         self.clock["force_scale"] = contact.force_scale
 
@@ -110,7 +110,7 @@ class Surface:
         if shown is None:
             shown = found.view()
             shown.setflags(write=False)
-        self.mesh = mesh_of(mesh, shown, body.decay)
+        self.mesh = make_mesh(mesh, shown, body.decay)
         self.table = Table(self.stiffness.entries, 0.0, STEP, found)
 
     def tabulate(self, frame: float) -> None:
@@ -255,8 +255,8 @@ class Surface:
         gap = base + clock["deflection"] - u
         law(gap, self.parameters.law, pressure, scratch, n)
         force = tip_force(pressure, gap, rise, mesh, frame, law, self.parameters.law, far_work)
-        edge = frame * radius_of_gap(gap, mesh.nodes, self.edge_gap)
-        zone = frame * radius_of_gap(gap, mesh.nodes, self.open_gap) - edge
+        edge = frame * find_radius(gap, mesh.nodes, self.edge_gap)
+        zone = frame * find_radius(gap, mesh.nodes, self.open_gap) - edge
         lag = self.fields[LOAD] - memory
         rates = elements / self.parameters.retardation
         clock["frame_earlier"] = clock["frame_earliest"] = frame
@@ -291,7 +291,7 @@ class Surface:
         return float(elastic + bending + 2 * np.pi * (near + beyond))
 
 
-def gap_origin(contact) -> float:
+def find_gap_origin(contact) -> float:
     """Return where the solver counts gaps from, m, so that pressures change alike in all of them.
 
     Steps, errors and the mesh are judged relative to the gap. That suits a Lennard-Jones law, whose

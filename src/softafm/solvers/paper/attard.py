@@ -8,11 +8,11 @@ import numpy as np
 from softafm.bodies.half_space import refuse_other_bodies
 from softafm.bodies.radial_functions import grid
 from softafm.bodies.rings import ring_influence
-from softafm.checks.validate import one_of, positive, whole
-from softafm.compiled.announce import announced_compilation
+from softafm.checks.validate import check_choice, check_positive, check_whole
+from softafm.compiled.announce import announce_compilation
 from softafm.progress import Progress
 from softafm.solvers.history import History
-from softafm.solvers.paper.stepping import ForwardEuler, Stepper, stepper_of
+from softafm.solvers.paper.stepping import ForwardEuler, Stepper, check_stepper
 
 
 @dataclass(frozen=True)
@@ -67,16 +67,16 @@ class Attard:
     most_iterations: int = 100_000
 
     def __post_init__(self) -> None:
-        whole("nodes", self.nodes, 2, 2000)
+        check_whole("nodes", self.nodes, 2, 2000)
         if self.domain is not None:
-            object.__setattr__(self, "domain", positive("domain", self.domain, "m"))
-        one_of("method", self.method, ("iterative", "explicit"))
-        whole("steps", self.steps, 1, 100_000_000)
-        stepper_of(self.stepper)
-        positive("iteration_tolerance", self.iteration_tolerance, "")
-        if self.relaxation is not None and positive("relaxation", self.relaxation, "") > 1:
+            object.__setattr__(self, "domain", check_positive("domain", self.domain, "m"))
+        check_choice("method", self.method, ("iterative", "explicit"))
+        check_whole("steps", self.steps, 1, 100_000_000)
+        check_stepper(self.stepper)
+        check_positive("iteration_tolerance", self.iteration_tolerance, "")
+        if self.relaxation is not None and check_positive("relaxation", self.relaxation, "") > 1:
             raise ValueError(f"relaxation = {self.relaxation:g}: must be at most 1")
-        whole("most_iterations", self.most_iterations, 1, 1_000_000_000)
+        check_whole("most_iterations", self.most_iterations, 1, 1_000_000_000)
 
     def solve(
         self,
@@ -113,21 +113,21 @@ class Attard:
             If the body is no half-space.
         """
         refuse_other_bodies(self, contact)
-        with announced_compilation(self.kind):
+        with announce_compilation(self.kind):
             from softafm.solvers.paper import kernel as k
             from softafm.solvers.paper.run import (
                 Discretisation,
                 Iteration,
-                beyond_domain,
-                default_domain,
+                choose_domain,
+                list_beyond_domain,
                 march,
             )
 
-        domain = self.domain or default_domain(contact, motion)
+        domain = self.domain or choose_domain(contact, motion)
         segments = grid(self.nodes, "midpoint")
         radius = domain * segments.radius
         profile = contact.tip.profile(radius)
-        far_rise, far_area = beyond_domain(contact.tip, domain, radius[-1])
+        far_rise, far_area = list_beyond_domain(contact.tip, domain, radius[-1])
         setup = k.Setup(
             kind=k.ITERATIVE if self.method == "iterative" else k.NODAL,
             carried=0.0,

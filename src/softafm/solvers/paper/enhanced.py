@@ -8,11 +8,11 @@ import numpy as np
 from softafm.bodies import radial_functions as functions
 from softafm.bodies.half_space import refuse_other_bodies
 from softafm.bodies.rings import ring_influence
-from softafm.checks.validate import one_of, positive, whole
-from softafm.compiled.announce import announced_compilation
+from softafm.checks.validate import check_choice, check_positive, check_whole
+from softafm.compiled.announce import announce_compilation
 from softafm.progress import Progress
 from softafm.solvers.history import History
-from softafm.solvers.paper.stepping import AdamsBashforth, Stepper, stepper_of
+from softafm.solvers.paper.stepping import AdamsBashforth, Stepper, check_stepper
 
 # What is expanded: u = carried·(h0 + g) + sign·Σ a_i f_i.
 _EXPANSIONS = {"deformation": (0.0, 1.0), "gap": (1.0, -1.0), "bounded-gap": (0.0, -1.0)}
@@ -77,16 +77,16 @@ class EnhancedAttard:
     stepper: Stepper = field(default_factory=AdamsBashforth)
 
     def __post_init__(self) -> None:
-        whole("nodes", self.nodes, 2, 2000)
-        whole("functions", self.functions, 1, self.nodes)
-        one_of("basis", self.basis, functions.BASES)
-        one_of("expand", self.expand, tuple(_EXPANSIONS))
-        one_of("orthogonal", self.orthogonal, (True, False))
+        check_whole("nodes", self.nodes, 2, 2000)
+        check_whole("functions", self.functions, 1, self.nodes)
+        check_choice("basis", self.basis, functions.BASES)
+        check_choice("expand", self.expand, tuple(_EXPANSIONS))
+        check_choice("orthogonal", self.orthogonal, (True, False))
         if self.domain is not None:
-            object.__setattr__(self, "domain", positive("domain", self.domain, "m"))
-        one_of("quadrature", self.quadrature, functions.QUADRATURES)
-        whole("steps", self.steps, 1, 100_000_000)
-        stepper_of(self.stepper)
+            object.__setattr__(self, "domain", check_positive("domain", self.domain, "m"))
+        check_choice("quadrature", self.quadrature, functions.QUADRATURES)
+        check_whole("steps", self.steps, 1, 100_000_000)
+        check_stepper(self.stepper)
 
     def solve(
         self,
@@ -123,10 +123,10 @@ class EnhancedAttard:
             If the body is no half-space.
         """
         refuse_other_bodies(self, contact)
-        with announced_compilation(self.kind):
-            from softafm.solvers.paper.run import default_domain, march
+        with announce_compilation(self.kind):
+            from softafm.solvers.paper.run import choose_domain, march
 
-        domain = self.domain or default_domain(contact, motion)
+        domain = self.domain or choose_domain(contact, motion)
         surface = self._discretise(contact.tip, domain, float(motion.height(motion.breaks[0])))
         return march(
             surface, contact, motion, self, stiffness=stiffness, tolerance=tolerance,
@@ -142,7 +142,7 @@ class EnhancedAttard:
 
     def _discretise(self, tip, domain: float, height: float):
         from softafm.solvers.paper import kernel as k
-        from softafm.solvers.paper.run import Discretisation, beyond_domain
+        from softafm.solvers.paper.run import Discretisation, list_beyond_domain
 
         count, basis = self.functions, self.basis
         segments = functions.grid(self.nodes, self.quadrature)
@@ -159,7 +159,7 @@ class EnhancedAttard:
         else:
             influence = ring_influence(segments.radius, segments.edges)
             unity, profile_image = np.ones(self.nodes), profile
-        far_rise, far_area = beyond_domain(tip, domain, radius[-1])
+        far_rise, far_area = list_beyond_domain(tip, domain, radius[-1])
         setup = k.Setup(
             kind=k.ORTHOGONAL if self.orthogonal else k.LEAST_SQUARES,
             carried=carried,

@@ -28,11 +28,11 @@ from softafm.compiled.dense import (
     factorise,
     factorise_general,
     multiply,
-    row_products,
+    multiply_rows,
     solve_factorised,
     solve_general,
 )
-from softafm.compiled.functions import PRESSURE, compile_for, pointer
+from softafm.compiled.functions import PRESSURE, compile_for, pointer_to
 
 _V = float64[::1]
 _M = float64[:, ::1]
@@ -155,7 +155,7 @@ WORK = types.NamedTuple(
 
 
 @_compile_for(
-    boolean(SETUP, pointer(PRESSURE), MATERIAL, CONTROLS, float64, _M, WORK),
+    boolean(SETUP, pointer_to(PRESSURE), MATERIAL, CONTROLS, float64, _M, WORK),
     inline="always",
 )
 def observe(setup, law, material, controls, height, state, work):
@@ -260,11 +260,11 @@ def rates(setup, material, controls, height, speed, state, out, work, counters):
             work.stiffened[i, j] = setup.influence[i, j] * work.scratch[j]
     if setup.kind == LEAST_SQUARES:
         # Columns of I − J_g K P' in rows, applied to every function.
-        row_products(setup.shapes, work.stiffened, work.matrix)
+        multiply_rows(setup.shapes, work.stiffened, work.matrix)
         for j in range(unknowns):
             for i in range(equations):
                 work.matrix[j, i] += setup.shapes[j, i]
-        row_products(work.matrix, work.matrix, work.normal)
+        multiply_rows(work.matrix, work.matrix, work.normal)
         multiply(work.matrix, right, work.solution)
         if not factorise(work.normal, unknowns):
             return BLOWN_UP
@@ -272,7 +272,7 @@ def rates(setup, material, controls, height, speed, state, out, work, counters):
     else:
         matrix = work.stiffened
         if setup.kind == ORTHOGONAL:
-            row_products(work.stiffened, setup.shapes, work.matrix)
+            multiply_rows(work.stiffened, setup.shapes, work.matrix)
             matrix = work.matrix
         for i in range(equations):
             matrix[i, i] += 1.0
@@ -288,7 +288,7 @@ def rates(setup, material, controls, height, speed, state, out, work, counters):
     return FINISHED
 
 
-@_compile_for(float64(SETUP, pointer(PRESSURE), MATERIAL, WORK))
+@_compile_for(float64(SETUP, pointer_to(PRESSURE), MATERIAL, WORK))
 def tip_force(setup, law, material, work):
     """Force on the tip, N; leaves gap, pressure and slope beyond the domain in ``work.far``."""
     far, last = setup.far_rise.size, work.gap.size - 1
@@ -409,7 +409,7 @@ def filter_pressure(step, retardation, before, pressure, filtered):
 
 @_compile_for(
     int64(
-        SETUP, pointer(PRESSURE), MATERIAL, CONTROLS,
+        SETUP, pointer_to(PRESSURE), MATERIAL, CONTROLS,
         _CONST, _CONST, int64, _M, _CUBE, WORK, _M, _M, int64[::1],
     ),
 )  # fmt: skip

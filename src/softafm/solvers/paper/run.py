@@ -11,7 +11,7 @@ from softafm.bodies.mesh import beyond
 from softafm.checks.callers import warn_caller
 from softafm.errors import AccuracyWarning, DivergedError
 from softafm.instrument.motion import count_periods, is_steady
-from softafm.instrument.motions import lowest_height
+from softafm.instrument.motions import find_lowest_height
 from softafm.solvers.history import History, Profiles
 from softafm.solvers.paper import kernel as k
 
@@ -44,18 +44,18 @@ class _Piece(NamedTuple):
     speeds: np.ndarray
 
 
-def default_domain(contact, motion) -> float:
+def choose_domain(contact, motion) -> float:
     """Radius of the computational domain, m: the largest contact expected and what acts around it.
 
     The contact is that of the relaxed JKR theory at the lowest tip height. Around it the domain
     reaches to where the tip has risen by 12 reaches of the surface law or thrice its lowest height.
     """
-    lowest, tip = lowest_height(motion), contact.tip
+    lowest, tip = find_lowest_height(motion), contact.tip
     rise = max(12 * contact.reach, 3 * lowest)
     return float(tip.radius_at(float(tip.profile(contact.contact_radius(lowest))) + rise))
 
 
-def beyond_domain(tip, domain: float, last: float) -> tuple[np.ndarray, np.ndarray]:
+def list_beyond_domain(tip, domain: float, last: float) -> tuple[np.ndarray, np.ndarray]:
     """Heights of the tip above radius ``last``, and 2πr dr, at radii beyond the domain."""
     radius, masses = beyond(domain)
     return tip.profile(radius) - tip.profile(last), 2 * np.pi * masses
@@ -118,16 +118,18 @@ class _Run:
         self.edge_gap = contact.edge_gap
         self.domain = discretisation.domain
         unknowns = self.setup.shapes.shape[0]
-        self.largest_pressure = _largest_pressure(contact, self.domain, unknowns)
+        self.largest_pressure = _find_largest_pressure(contact, self.domain, unknowns)
         self.iteration = iteration
-        self.pieces = list(_pieces(motion, solver.steps))
+        self.pieces = list(_divide(motion, solver.steps))
         modes = creep.retardation_times.size
         equations, nodes = self.setup.influence.shape
         rows = max(1, modes)
         self.state = np.zeros((rows, equations))
         self.state[0, : discretisation.flat.size] = discretisation.flat
         self.past = np.zeros((max(2, solver.stepper.weights.size), rows, equations))
-        self.work = _workspace(self.past.shape, modes, nodes, unknowns, self.setup.far_rise.size)
+        self.work = _make_workspace(
+            self.past.shape, modes, nodes, unknowns, self.setup.far_rise.size
+        )
         self.work.tip[0] = motion.height(motion.breaks[0])
         total = 1 + sum(piece.time.size - 1 for piece in self.pieces)
         self.records = np.empty((total, k.RECORD_WIDTH))
@@ -264,7 +266,7 @@ class _Run:
             )
 
 
-def _largest_pressure(contact, domain: float, unknowns: int) -> float:
+def _find_largest_pressure(contact, domain: float, unknowns: int) -> float:
     """Return a pressure that no contact within the domain reaches, Pa.
 
     Twice the peak of a Hertz contact that fills the domain at the instantaneous modulus and the
@@ -277,7 +279,7 @@ def _largest_pressure(contact, domain: float, unknowns: int) -> float:
     return share * float(hertz + contact.surface.largest_tension)
 
 
-def _pieces(motion, steps: int):
+def _divide(motion, steps: int):
     """Divide ``steps`` among the smooth pieces of a motion by their duration."""
     breaks = motion.breaks
     shares = np.round(steps * (breaks - breaks[0]) / (breaks[-1] - breaks[0])).astype(int)
@@ -293,7 +295,7 @@ def _pieces(motion, steps: int):
         )
 
 
-def _workspace(
+def _make_workspace(
     past: tuple[int, int, int], modes: int, nodes: int, unknowns: int, far: int
 ) -> k.Work:
     """Return the arrays that a run with a ring of ``past`` rates keeps."""

@@ -5,7 +5,7 @@ from typing import ClassVar
 
 import numpy as np
 
-from softafm.checks.validate import whole
+from softafm.checks.validate import check_whole
 
 
 @dataclass(frozen=True)
@@ -31,7 +31,7 @@ class AdamsBashforth:
     order: int = 2
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "order", whole("order", self.order, 1, 5))
+        object.__setattr__(self, "order", check_whole("order", self.order, 1, 5))
 
     @property
     def weights(self) -> np.ndarray:
@@ -70,7 +70,7 @@ class RungeKutta4:
 Stepper = AdamsBashforth | ForwardEuler | RungeKutta4
 
 
-def stepper_of(value) -> Stepper:
+def check_stepper(value) -> Stepper:
     """Return ``value`` if it is a stepper, else raise ValueError."""
     if not isinstance(value, Stepper):
         raise ValueError(
