@@ -113,8 +113,8 @@ def equilibrate(
     ``ac`` is frame radius times compliance, ``standoff`` the gap to the flat surface of an unbent
     lever. Its deflection q balances ``lever``·(q − ``rest``) against the force, of which some acts
     beyond the mesh (see ``integrate_beyond_mesh``); ``lever`` 0 holds q still. Leaves the gap and
-    the pressure in rows 0 and 1 of ``work``. Returns the iterations, negative if no stable shape was
-    near the guess (an indefinite Hessian, or no convergence).
+    the pressure in rows 0 and 1 of ``work``. Returns the iterations, negative if no stable shape
+    was near the guess (an indefinite Hessian, or no convergence).
     """
     n = standoff.size
     size = n + 1 if lever > 0.0 else n
