@@ -270,11 +270,11 @@ def test_a_name_means_the_same_in_all_results():
 def test_fields_of_a_dataclass_are_written_by_their_types(field, written, value):
     made = make_dataclass("Made", [("field", field)], namespace={"kind": "made"}, frozen=True)
     assert (
-        schema.build_kind("made", {"field": written}, schema.read_table(made), folder=Path()).field
+        schema.build_kind("made", {"field": written}, schema.table_of(made), folder=Path()).field
         == value
     )
     with pytest.raises(ConfigError, match=r"^made\.field = \{\}: must be "):
-        schema.build_kind("made", {"field": {}}, schema.read_table(made), folder=Path())
+        schema.build_kind("made", {"field": {}}, schema.table_of(made), folder=Path())
 
 
 def test_a_dimension_needs_a_meaning():
