@@ -222,7 +222,7 @@ class Counted(energy_run.Run):
 
     def _advance(self, stop):
         surface = self.surface
-        size = surface.mesh.nodes.size + bool(surface.parameters.lever[0])
+        size = surface.mesh.nodes.size + surface.bends
         before = surface.clock["newtons"]
         outcome, records, shapes = super()._advance(stop)
         done = surface.clock["newtons"] - before, len(records)

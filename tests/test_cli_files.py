@@ -75,7 +75,7 @@ def test_the_time_for_a_reading_follows_the_size(folder, monkeypatch):
 STUCK = """
 import sys
 from softafm.files import guard
-from softafm.experiment.config import example_text
+from softafm.experiment.config import read_example
 from softafm.results.datasets import load_apart
 from softafm.cli import main
 read = guard.read_apart

@@ -245,7 +245,7 @@ def test_code_of_builds_that_nobody_uses_is_removed(monkeypatch, tmp_path):
 def test_the_name_of_a_build_follows_its_options(probed):
     builds = set()
     for level in ("1", "2"):
-        code = "from softafm.compiled import store as code_store; print(code_store.build())"
+        code = "from softafm.compiled import store as code_store; print(code_store.name_build())"
         environment = os.environ | {"NUMBA_OPT": level}
         done = subprocess.run([sys.executable, "-c", code], env=environment, capture_output=True)
         builds.add(done.stdout)

@@ -15,6 +15,7 @@ from softafm.experiment.config import (
 )
 from softafm.experiment.toml_text import parse, parse_apart
 from softafm.files.guard import Unreadable, read_apart
+from softafm.modes import MODES
 
 LARGE = 900_000
 
@@ -76,7 +77,7 @@ def test_long_lists_are_refused_before_their_units_are_read():
     sample = {"model": "generalized-maxwell", "E_inf": "1 Pa", "poisson": 0.4}
     sample |= {"moduli": ["1 Pa"] * 5000, "relaxation_times": ["1 s"]}
     with pytest.raises(ConfigError, match=r"moduli = .*: has 5000 entries: must have at most 1000"):
-        build_table("sample", {"sample": sample}, "tapping-cycle", None)
+        build_table("sample", {"sample": sample}, MODES["tapping-cycle"], None)
 
 
 def test_a_guard_brings_tables_and_texts_of_dates():

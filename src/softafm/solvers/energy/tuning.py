@@ -18,7 +18,8 @@ MOST_ITERATIONS = 8
 
 TRUSTED = 0.1
 """Second correction, in units of the accuracy, below which it is left out. Larger ones cost slack
-contacts and steady cycles more than they save (docs/performance.md, "What did not help")."""
+contacts and steady cycles more than they save (``softafm docs performance``, "What did not
+help")."""
 
 FORGOTTEN = 1.2
 """Factor by which the stored contraction estimate grows each time a second iteration is left out
@@ -26,7 +27,7 @@ because of it, so that it is measured again from time to time."""
 
 EQUILIBRIUM_ERROR = 1e-3
 """Error of an equilibrium, relative to the gap, at a tolerance of 1e-2: below those of a step, as a
-slack contact follows its edge by the softest of its shapes (docs/performance.md)."""
+slack contact follows its edge by the softest of its shapes (``softafm docs performance``)."""
 
 # The descent in energy, used where no stable shape is near.
 
@@ -70,7 +71,7 @@ AT_REST = 0.2
 
 LAG = 2.0
 """How far the edge moves, in edge spacings, while the frame catches up with it: at once, slack
-contacts amplify the change of mesh (docs/performance.md, "What did not help")."""
+contacts amplify the change of mesh (``softafm docs performance``, "What did not help")."""
 
 SMALLEST_FRAME = 0.5
 """Smallest frame, in frames of the shape before: interpolation needs the same nodes in both."""
@@ -89,7 +90,7 @@ SPACING = 0.2
 
 GROWTH, SLOWEST_GROWTH = 0.3, 0.2
 """Logarithmic growth of the spacing a node away from the edge, and its least one, in slack contacts
-(docs/performance.md, "What did not help": 0.45 slips in slack contacts)."""
+(``softafm docs performance``, "What did not help": 0.45 slips in slack contacts)."""
 
 SLACK = 3.0
 """Fast Tabor number from which on the edge of a contact yields to small errors, such as those of a
