@@ -26,7 +26,7 @@ POINTS = 6
 class _Operator:
     """A body on a mesh; what ``key`` does not tell makes no difference."""
 
-    key: tuple
+    key: tuple[Any, ...]
     body: Body = field(compare=False)
     mesh: UnitMesh = field(compare=False)
 

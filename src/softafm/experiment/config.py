@@ -18,6 +18,7 @@ from softafm.modes import MODES, Inputs, Mode, Settings
 from softafm.modes.check import plan_finer_run
 from softafm.modes.perform import simulate
 from softafm.modes.start import refuse_start_inside, refuse_unable, regularise_contact
+from softafm.solvers.solver import Solver
 
 if TYPE_CHECKING:
     from xarray import Dataset
@@ -56,7 +57,7 @@ class Experiment:
     contact: Contact
     motion: Any
     cantilever: Any = None
-    solver: Any = None
+    solver: Solver | None = None
     tolerance: float = 1e-2
     profiles: bool = False
     check: bool = False
@@ -311,7 +312,9 @@ def build_experiment(
     )
 
 
-def _refuse_run(contact: Contact, solver: Any, run: schema.Run, document: Mapping) -> None:
+def _refuse_run(
+    contact: Contact, solver: Solver | None, run: schema.Run, document: Mapping[str, Any]
+) -> None:
     """Raise ConfigError if the run cannot be checked, or the contact not be regularised."""
     written = document.get("run", {})
     try:
@@ -323,7 +326,7 @@ def _refuse_run(contact: Contact, solver: Any, run: schema.Run, document: Mappin
         raise ConfigError([f"run.{key} = {show(written[key])}: {reason}"]) from None
 
 
-def _refuse_flow(contact: Contact, mode: Mode, motion: Any, written: dict) -> None:
+def _refuse_flow(contact: Contact, mode: Mode, motion: Any, written: dict[str, Any]) -> None:
     """Raise ConfigError if cycles are to be steady on a sample that flows."""
     if contact.body.compliance.fluidity == 0:
         return
@@ -344,7 +347,9 @@ def _refuse_flow(contact: Contact, mode: Mode, motion: Any, written: dict) -> No
         )
 
 
-def _refuse_motion(contact: Contact, motion: Any, solver: Any, written: dict) -> None:
+def _refuse_motion(
+    contact: Contact, motion: Any, solver: Solver | None, written: dict[str, Any]
+) -> None:
     """Raise ConfigError if the motion starts inside the surface or the solver cannot follow it."""
     try:
         refuse_start_inside(contact, motion)

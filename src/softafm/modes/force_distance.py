@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from softafm.contact import Contact
+from softafm.instrument.motion import Motion
 from softafm.instrument.motions import Sine, Trajectory, Triangle
 from softafm.modes.mode import Mode
 from softafm.modes.parts import Layout
@@ -12,6 +13,7 @@ from softafm.modes.perform import perform
 from softafm.progress import Progress
 from softafm.results.content import RAMPED, observables
 from softafm.solvers.history import History
+from softafm.solvers.solver import Solver
 
 if TYPE_CHECKING:
     from xarray import Dataset
@@ -19,9 +21,9 @@ if TYPE_CHECKING:
 
 def force_distance(
     contact: Contact,
-    motion: Triangle | Sine | Trajectory,
+    motion: Motion,
     *,
-    solver: Any = None,
+    solver: Solver | None = None,
     tolerance: float = 1e-2,
     profiles: bool = False,
     progress: bool | Progress | None = None,

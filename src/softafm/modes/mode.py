@@ -103,7 +103,7 @@ class Mode:
     gaps: bool = False
     other_names: str = ""
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         if (self.observe is None) == (self.simulate is None):
             raise ValueError(f"mode '{self.name}': must have either observe or simulate")
         check_choice(f"mode '{self.name}': lever", self.lever, ("", "stiffness", "resonator"))
