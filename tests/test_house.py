@@ -8,7 +8,7 @@ import softafm
 
 PACKAGE = Path(softafm.__file__).parent
 FLOORS = (
-    {"errors", "progress", "units"},
+    {"errors", "progress", "units", "version"},
     {"checks"},
     {"compiled"},
     {"bodies", "instrument"},

@@ -104,7 +104,7 @@ LOADS = modes.Mode(
     },
     simulate=press_to_all,
     axes=modes.Axes(("depth",), lambda asked: (asked.depths,), ("deepest", "count")),
-    list_tables={"ramp": Ramp},
+    tables={"ramp": Ramp},
     scales=lambda inputs, result: modes.Scales({"N": 1e-9}),
     foresee=lambda inputs: modes.Foreseen(
         sa.Triangle(5e-9, -inputs.motion.deepest, 1e-6), inputs.motion.count, "ramp"
