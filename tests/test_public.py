@@ -292,7 +292,7 @@ def test_solvers_and_motions_of_ones_own_fit_the_types():
         (label, each.name, each.annotation)
         for label, function in public_functions()
         for each in inspect.signature(function).parameters.values()
-        if each.name in wanted
+        if each.name in wanted and not label.startswith("modes.")  # theirs may describe a motion
     ]
     assert [(label, a) for label, name, a in found if a != wanted[name]] == []
     assert {name for _, name, _ in found} == set(wanted)

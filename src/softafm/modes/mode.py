@@ -25,6 +25,10 @@ Values = Mapping[str, Any]
 _NUMBERS, _HISTORY = Axes(), Layout()
 
 
+def _keep(motion: Any) -> Any:
+    return motion
+
+
 @dataclass(frozen=True, eq=False)
 class Mode:
     """All that the rest of the program needs to know of a mode.
@@ -90,7 +94,7 @@ class Mode:
     observables: Mapping[str, Observable]
     observe: "Callable[[Contact, Any, History], Values] | None" = None
     simulate: "Callable[[Inputs, Settings], Outcome] | None" = None
-    path: Callable[[Any], Any] = lambda motion: motion
+    path: Callable[[Any], Any] = _keep
     lever: Literal["", "stiffness", "resonator"] = ""
     tables: Mapping[str, type] = field(default_factory=dict)
     steady: bool = False
