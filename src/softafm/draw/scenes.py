@@ -123,7 +123,7 @@ def measure_changes(force: np.ndarray, surface: np.ndarray) -> np.ndarray:
 
 
 def find_jumping_steps(time: np.ndarray, jumps: np.ndarray) -> np.ndarray:
-    """Tell which steps (n - 1,) between instants (n,) hold an elastic jump."""
+    """Return which steps (n - 1,) between instants (n,) hold an elastic jump."""
     return np.isin(np.arange(1, time.size), np.searchsorted(time, jumps))
 
 

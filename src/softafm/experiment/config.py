@@ -269,7 +269,7 @@ def build_experiment(
     elif "cantilever" in document:
         levers = [each.name for each in MODES.values() if each.lever]
         problems.append(
-            f"cantilever: of no use with mode = '{mode.name}'; leave it out, or use the mode "
+            f"cantilever: not used with mode = '{mode.name}'; leave it out, or use the mode "
             f"{join_with_or(levers)}"
         )
     built: dict[str, Any] = {}
@@ -279,16 +279,7 @@ def build_experiment(
         except ConfigError as error:
             problems += str(error).splitlines()
     run, solver = built.get("run", schema.Run()), built.get("solver")
-    if solver is not None and not solver.adaptive and "tolerance" in run.model_fields_set:
-        problems.append(
-            f"run.tolerance = {run.tolerance}: the solver '{solver.kind}' takes fixed steps, which "
-            "no tolerance changes; leave it out and use solver.steps"
-        )
-    if run.profiles and mode is not None and not mode.takes_profiles:
-        problems.append(
-            f"run.profiles = True: of no use with mode = '{mode.name}', which keeps observables "
-            "and no shapes of the surface; leave it out"
-        )
+    problems += _list_unusable(run, solver, mode)
     if problems or mode is None:
         raise ConfigError(problems)
     contact = Contact(tip=built["tip"], sample=built["sample"], surface=built["surface"])
@@ -312,6 +303,20 @@ def build_experiment(
     )
 
 
+def _list_unusable(run: schema.Run, solver: Solver | None, mode: Mode | None) -> Iterator[str]:
+    """Yield a line for each option of a run that its solver or its mode cannot use."""
+    if solver is not None and not solver.adaptive and "tolerance" in run.model_fields_set:
+        yield (
+            f"run.tolerance = {run.tolerance}: the solver '{solver.kind}' takes fixed steps, which "
+            "no tolerance changes; leave it out and use solver.steps"
+        )
+    if run.profiles and mode is not None and not mode.takes_profiles:
+        yield (
+            f"run.profiles = True: not used with mode = '{mode.name}', which keeps observables "
+            "and no shapes of the surface; leave it out"
+        )
+
+
 def _refuse_run(
     contact: Contact, solver: Solver | None, run: schema.Run, document: Mapping[str, Any]
 ) -> None:
@@ -333,8 +338,8 @@ def _refuse_flow(contact: Contact, mode: Mode, motion: Any, written: dict[str, A
     if mode.steady:
         raise ConfigError(
             [
-                f"mode = '{mode.name}': of no use, as the sample '{contact.sample.kind}' flows and "
-                "the tip sinks deeper with every cycle"
+                f"mode = '{mode.name}': cannot be used, as the sample '{contact.sample.kind}' "
+                "flows and the tip sinks deeper with every cycle"
             ]
         )
     if is_steady(motion):

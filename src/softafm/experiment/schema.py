@@ -222,10 +222,10 @@ class TrajectoryMotion(Table):
 
     def build(self) -> Trajectory:
         if self.noise is not None and not self.measured:
-            raise ValueError("noise = : of no use without measured = true")
+            raise ValueError("noise = : not used without measured = true")
         if self.smooth and self.measured:
             raise ValueError(
-                "smooth = True: of no use with measured = true, which is smooth between corners"
+                "smooth = True: not used with measured = true, which is smooth between corners"
             )
         samples = self.file.time, self.file.heights
         if not self.measured:

@@ -172,7 +172,7 @@ def _collect_warnings(
     tolerance: float,
     found: Solutions,
 ) -> Iterator[AccuracyWarning]:
-    """Tell of missing and surplus solutions, and run a few again to see whether they hold."""
+    """Yield warnings of solutions that are missing, too many, or do not hold when run again."""
     if found.amplitude.size == 0:
         yield AccuracyWarning("no height goes with any of the amplitudes: there is nothing to plot")
         return

@@ -48,7 +48,7 @@ def force_distance(
         None, True for a bar, or a callable (fraction, message).
     check
         Repeat the run at a tenth of the tolerance, or with twice the steps and nodes of a solver of
-        fixed steps, and tell the differences in the attributes ``check_...``. One above the
+        fixed steps, and state the differences in the attributes ``check_...``. One above the
         tolerance raises ``AccuracyWarning``.
     regularise
         Tabor number, 0.1 to 100, to which that of a softer contact is lowered by enlarging the

@@ -121,7 +121,7 @@ class Layout(NamedTuple):
     cropped
         Whether panels show only where there is a force.
     title
-        Scalars to be told above, each with a name for it.
+        Scalars shown above, each with a name for it.
     """
 
     panels: tuple[tuple[str, str], ...] = (("time", "force"), ("tip_height", "force"))

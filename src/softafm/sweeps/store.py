@@ -448,7 +448,7 @@ def _hash_coordinates(campaign: Campaign) -> dict[str, str]:
 
 
 def describe_difference(store: Store, campaign: Campaign) -> str | None:
-    """Tell in what a campaign differs from the one that began a store; None if in nothing."""
+    """Return in what a campaign differs from the one that began a store; None if in nothing."""
     begun = json.loads(store.attributes["campaign"])
     ours = json.loads(json.dumps(campaign.identity))
     found = _find_difference(begun, ours, "")

@@ -182,8 +182,7 @@ class Surface:
         """Go back to ``time``; return the memory gained since, (elements, n) in Pa·m.
 
         It is returned on a mesh of its own, always the same, that of the finest level so far. The
-        surface keeps its mesh if it is in contact. Whoever goes on has to ``remember``, then to
-        ``settle``.
+        surface keeps its mesh if it is in contact. To go on, ``remember`` first, then ``settle``.
         """
         clock = self.clock
         if self.archive[1] == 0:
