@@ -29,7 +29,7 @@ class Misses(NamedTuple):
     observables: dict[str, float]
     height: float
     """Largest deviation of Z, m."""
-    amiss: int
+    wrong: int
     """Solutions missing or too many."""
 
 
@@ -74,11 +74,11 @@ def approach_misses(tolerance) -> Misses:
     _, rows = polystyrene()
     found = approach_curve([row["amplitude_ratio"] for row in rows], tolerance)
     errors: dict[str, float] = {}
-    off, amiss = 0.0, 0
+    off, wrong = 0.0, 0
     for i, row in enumerate(rows):
         table = found.isel(amplitude_ratio=i)
         order = np.argsort(-np.nan_to_num(table["mean_height"].values))
-        amiss += abs(int(np.isfinite(table["mean_height"]).sum()) - len(row["solutions"]))
+        wrong += abs(int(np.isfinite(table["mean_height"]).sum()) - len(row["solutions"]))
         for j, solution in zip(order, row["solutions"], strict=False):
             off = max(off, abs(float(table["mean_height"][j]) - solution["mean_height"]))
             wanted = dict(solution)
@@ -88,14 +88,14 @@ def approach_misses(tolerance) -> Misses:
                 error = 100 * (float(table[name][j]) / wanted[name] - 1)
                 key = f"{name} at {row['amplitude_ratio']:g}"
                 errors[key] = max(errors.get(key, 0.0), error, key=abs)
-    return Misses(errors, off, amiss)
+    return Misses(errors, off, wrong)
 
 
 def approach(tolerance):
     """The curve of Fig. 9: its time with 31 ratios, its errors at the ratios of the reference."""
     result, seconds = common.timed(lambda: approach_curve(RATIOS, tolerance))
-    errors, off, amiss = approach_misses(tolerance)
-    notes = f"{common.told(errors)}; Z {1e12 * off:.1f} pm; {amiss} solutions amiss"
+    errors, off, wrong = approach_misses(tolerance)
+    notes = f"{common.told(errors)}; Z {1e12 * off:.1f} pm; {wrong} solutions missing or wrong"
     yield "approach curve, 31 ratios", seconds, f"{result.attrs['solver_taps']} taps", notes
 
 

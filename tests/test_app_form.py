@@ -154,7 +154,7 @@ def test_outlook_is_the_regime_and_cost_of_the_program():
         ("tip.shape", "con", "tip.shape", "did you mean 'cone'"),
         ("tip", 5, "tip", "must be a table"),
         ("mode", "taping-cycle", "mode", "did you mean 'tapping-cycle'"),
-        ("cantilever", {"stiffness": "1 N/m"}, "cantilever", "of no use"),
+        ("cantilever", {"stiffness": "1 N/m"}, "cantilever", "not used"),
         ("motion", None, "motion.mean_height", "missing; must be a length"),
         ("motion.cycles", 0, "motion.cycles", "must be a whole number"),
         ("run.tolerance", 5, "run.tolerance", "must be between"),

@@ -197,7 +197,7 @@ def test_what_is_exported_is_a_motion_to_run_again(folder, softafm, name):
 def test_an_approach_curve_is_run_plotted_and_exported(folder, softafm):
     assert softafm("example", "ps-approach-curve")[0] == 0
     run = ("run", "ps-approach-curve.toml", "--tolerance", "0.05", "--set", "motion.points=4")
-    assert "run.profiles = True: of no use" in refused(softafm(*run, "--profiles"))
+    assert "run.profiles = True: not used" in refused(softafm(*run, "--profiles"))
     code, out, err = softafm(*run)
     assert (code, err) == (0, "")
     assert re.search(r"repulsive +3 of 4 +amplitudes; 3\d° to \d+°, at most 4\.\d+ aJ", out)

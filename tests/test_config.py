@@ -457,7 +457,7 @@ def test_no_cycle_is_steady_on_a_sample_that_flows(load):
     assert refusal(load, flowing).startswith("motion.cycles: missing; must be a number, as the")
     line = refusal(load, flowing, "motion.cycles=steady")
     assert line.startswith("motion.cycles: 'steady'; must be a number, as the sample 'maxwell'")
-    assert refusal(load, sweeping).startswith("mode = 'approach-curve': of no use, as the sample")
+    assert refusal(load, sweeping).startswith("mode = 'approach-curve': cannot be used")
 
 
 def test_every_choice_is_among_those_built():
@@ -885,8 +885,8 @@ def test_missing_and_malformed_tables(load, table):
         ("surface.work_of_adhesion=30 mJ/m^2", "surface: give hamaker, or work_of_adhesion"),
         ("tip.raduis=10 nm", "tip.raduis: unknown key; did you mean 'radius'?"),
         ("cantilver.k=1", "cantilver: unknown key; did you mean 'cantilever'?"),
-        ("cantilever.stiffness=1 N/m", "cantilever: of no use with mode = 'tapping-cycle'; leave"),
-        ("cantilever=1", "cantilever: of no use with mode = 'tapping-cycle'; leave it out, or use"),
+        ("cantilever.stiffness=1 N/m", "cantilever: not used with mode = 'tapping-cycle'; leave"),
+        ("cantilever=1", "cantilever: not used with mode = 'tapping-cycle'; leave it out, or use"),
         ("tip.shape=paraboloyd", "tip.shape = 'paraboloyd': did you mean 'paraboloid'?"),
         ("mode=tapping-cycel", "mode = 'tapping-cycel': did you mean 'tapping-cycle'?"),
         ("mode=[1]", "mode = [1]: must be 'force-distance', 'force-spectroscopy', 'tapping-cycl"),
@@ -938,7 +938,7 @@ def test_only_a_counted_oscillation_must_start_outside_the_surface(load):
         ("motion.drive_frequency=0 Hz", "motion.drive_frequency = '0 Hz': must be greater than 0"),
         ("motion.mean_height=1 nm", "motion.mean_height: unknown key; must be 'free_amplitude', "),
         ("motion.shape=triangle", "motion.shape = 'triangle': must be 'sine'"),
-        ("run.profiles=true", "run.profiles = True: of no use with mode = 'approach-curve', which"),
+        ("run.profiles=true", "run.profiles = True: not used with mode = 'approach-curve', which"),
         ("cantilever.frequency=0 Hz", "cantilever.frequency = '0 Hz': must be greater than 0"),
     ],
 )
@@ -1116,7 +1116,7 @@ def test_bad_triangular_waves(load, motion, line):
         ("cantilever.k=1 N/m", "cantilever.k: unknown key; did you mean 'stiffness'? It must be"),
         ("cantilever={}", "cantilever.stiffness: missing; must be a stiffness with its unit, such"),
         ("cantilever=28", "cantilever = 28: must be a table, [cantilever]"),
-        ("mode=force-distance", "cantilever: of no use with mode = 'force-distance'; leave it out"),
+        ("mode=force-distance", "cantilever: not used with mode = 'force-distance'; leave it out"),
     ],
 )
 def test_bad_cantilevers(load, override, line):
@@ -1459,10 +1459,10 @@ def test_a_motion_from_a_file_may_be_smooth_or_measured(load):
 @pytest.mark.parametrize(
     ("keys", "line"),
     [
-        ({"noise": "1 nm"}, "motion.noise = '1 nm': of no use without measured = true"),
+        ({"noise": "1 nm"}, "motion.noise = '1 nm': not used without measured = true"),
         ({"measured": True, "noise": "0 nm"}, "motion.noise = '0 nm': must be greater than 0"),
         ({"measured": True, "noise": 1}, "motion.noise = 1: must be a length with its unit, such"),
-        ({"measured": True, "smooth": True}, "motion.smooth = True: of no use with measured = tr"),
+        ({"measured": True, "smooth": True}, "motion.smooth = True: not used with measured = tr"),
         ({"measured": "yes"}, "motion.measured = 'yes': must be true or false"),
         ({"smooth": 1}, "motion.smooth = 1: must be true or false"),
         ({"measure": True}, "motion.measure: unknown key; did you mean 'measured'?"),

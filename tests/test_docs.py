@@ -1,5 +1,6 @@
 """Examples of the documents are run, so that they cannot rot."""
 
+import ast
 import importlib
 import importlib.util
 import json
@@ -401,6 +402,19 @@ def test_the_reference_holds_every_public_name_and_no_other():
     for name in set(described) - public:  # of what public functions return or raise
         room, _, thing = f"softafm.{name}".rpartition(".")
         assert getattr(importlib.import_module(room), thing).__doc__
+
+
+@pytest.mark.parametrize("room", ["bodies", "instrument", "modes", "solvers"])
+def test_the_reference_holds_every_protocol(room):
+    page = (DOCS / "api" / "extending.md").read_text(encoding="utf-8")
+    described = set(re.findall(r"^::: (\S+)$", page, re.M))
+    public = getattr(sa, room).__all__ if f"softafm.{room}" in described else ()
+    for path in (PACKAGE / room).rglob("*.py"):
+        module = ".".join(path.relative_to(PACKAGE.parent).with_suffix("").parts)
+        for line in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+            bases = line.bases if isinstance(line, ast.ClassDef) else ()
+            if any(isinstance(base, ast.Name) and base.id == "Protocol" for base in bases):
+                assert f"{module}.{line.name}" in described or line.name in public, line.name
 
 
 def test_every_public_name_has_a_docstring():

@@ -195,7 +195,7 @@ def test_the_page_draws_it_and_offers_no_movie(loads):
     assert list(draw_figures([Shown("loads", "#000000", result)], "light")) == [
         "Depth below the flat surface"
     ]
-    with pytest.raises(ConfigError, match=r"^run.profiles = True: of no use with mode = 'load-c"):
+    with pytest.raises(ConfigError, match=r"^run.profiles = True: not used with mode = 'load-c"):
         build_experiment({**FILE, "run": {"profiles": True}}, Path())
 
 

@@ -11,6 +11,8 @@ import pytest
 
 import softafm as sa
 from softafm.experiment.config import Experiment, read_example
+from softafm.instrument.motion import Motion
+from softafm.solvers.solver import Solver
 
 TAP = tomllib.loads(read_example("ldpe-tapping"))
 GENTLE = """
@@ -282,6 +284,18 @@ def test_every_public_function_states_its_types():
             lacking.append(f"{label} ->")
     assert lacking == []
     assert len(dict(public_functions())) > 150
+
+
+def test_solvers_and_motions_of_ones_own_fit_the_types():
+    wanted = {"solver": Solver | None, "motion": Motion}
+    found = [
+        (label, each.name, each.annotation)
+        for label, function in public_functions()
+        for each in inspect.signature(function).parameters.values()
+        if each.name in wanted and not label.startswith("modes.")  # theirs may describe a motion
+    ]
+    assert [(label, a) for label, name, a in found if a != wanted[name]] == []
+    assert {name for _, name, _ in found} == set(wanted)
 
 
 def test_the_package_says_that_it_is_typed():

@@ -34,13 +34,13 @@ def main():
     modulus = maps[0].sample.fields["sample.E_inf"]
     for setpoint, image in zip(SETPOINTS, images, strict=True):
         for name, where in (("PS", modulus == modulus.max()), ("LDPE", modulus == modulus.min())):
-            told = {key: float(image[key].values[where].mean()) for key in
+            means = {key: float(image[key].values[where].mean()) for key in
                     ("topography", "phase", "dissipation", "force_max", "indentation")}  # fmt: skip
             print(
-                f"{setpoint:g} {name:5s} height {1e9 * told['topography']:.2f} nm, "
-                f"phase {told['phase']:.1f}°, dissipation {1e18 * told['dissipation']:.2f} aJ, "
-                f"force {1e9 * told['force_max']:.2f} nN, "
-                f"indentation {1e9 * told['indentation']:.2f} nm, "
+                f"{setpoint:g} {name:5s} height {1e9 * means['topography']:.2f} nm, "
+                f"phase {means['phase']:.1f}°, dissipation {1e18 * means['dissipation']:.2f} aJ, "
+                f"force {1e9 * means['force_max']:.2f} nN, "
+                f"indentation {1e9 * means['indentation']:.2f} nm, "
                 f"repulsive {float(image['branch'].values[where].mean()):.2f}"
             )
         print(f"{setpoint:g} taps {image.attrs['solver_taps']}", image.attrs["warnings"])

@@ -93,7 +93,7 @@ def write(page: Page, name: str) -> None:
 
 
 def play(page: Page, fraction: float) -> None:
-    """Put the movie at an instant, told as a fraction of its stretch."""
+    """Put the movie at an instant, given as a fraction of its stretch."""
     page.evaluate(
         """fraction => {
           const models = [...Bokeh.documents[0]._all_models.values()];

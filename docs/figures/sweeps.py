@@ -18,7 +18,7 @@ CAMPAIGNS, IMAGES = ROOT / "examples" / "campaigns", ROOT / "docs" / "images"
 
 
 def swept(name):
-    """Run a campaign, and tell how long that took."""
+    """Run a campaign, and print how long that took."""
     started = perf_counter()
     found = sa.sweep(CAMPAIGNS / f"{name}.toml").load()
     failed = int((found["state"] == 2).sum())

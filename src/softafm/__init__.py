@@ -3,7 +3,7 @@
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
-from softafm import indentation, samples, solvers
+from softafm import bodies, indentation, modes, samples, solvers
 from softafm.contact import Contact
 from softafm.draw.animation import animate
 from softafm.draw.contact import plot_contact
@@ -120,6 +120,7 @@ __all__ = [
     "VanDerWaalsAttraction",
     "animate",
     "approach_curve",
+    "bodies",
     "export",
     "export_gwyddion",
     "force_distance",
@@ -129,6 +130,7 @@ __all__ = [
     "load_experiment",
     "load_map",
     "load_sweep",
+    "modes",
     "plot",
     "plot_contact",
     "plot_map",

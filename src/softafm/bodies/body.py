@@ -55,7 +55,9 @@ class Body(Hashable, Protocol):
         shape (n, n). If ``length`` is infinite, ``frame`` makes no difference.
         """
 
-    def depth(self, tip: Any, radius: np.ndarray, modulus: float, work_of_adhesion: float):
+    def depth(
+        self, tip: Any, radius: np.ndarray, modulus: float, work_of_adhesion: float
+    ) -> np.ndarray:
         """Estimate the depth of ``tip`` in elastic contacts of some radii, shape (n,).
 
         ``modulus`` is the reduced one, Pa; surface forces are short-ranged, of a work of adhesion

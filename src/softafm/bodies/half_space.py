@@ -34,7 +34,7 @@ class HalfSpace:
     kind: ClassVar[str] = "half-space"
     sample: Any
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         refuse_sample("sample", self.sample)
 
     @cached_property
@@ -66,7 +66,9 @@ class HalfSpace:
         """Return the matrix of ``softafm.bodies.kernel``, the same for all frames."""
         return influence(mesh.nodes, mesh.spacing, mesh.masses)
 
-    def depth(self, tip, radius, modulus: float, work_of_adhesion: float) -> np.ndarray:
+    def depth(
+        self, tip: Any, radius: np.ndarray, modulus: float, work_of_adhesion: float
+    ) -> np.ndarray:
         """Depth of a tip in contacts of some radii (m), δ(a) − sqrt(2πaW/E), m, shape (n,).
 
         δ(a) = a ∫ g'(r)/√(a² − r²) dr, which is a²/R of a paraboloid; JKR for any profile (Maugis

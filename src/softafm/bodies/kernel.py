@@ -7,10 +7,12 @@ trapezoidal rule keeps its order when the singular term is replaced by its zeta-
 h Σ' ln|x_j| f_j + h ln(h/2π) f_0 up to O(h³).
 """
 
+from typing import Any
+
 import numpy as np
 
 
-def kernel(r, s, distance=None):
+def kernel(r: Any, s: Any, distance: Any = None) -> np.ndarray:
     """k(r, s) of two arrays of unequal positive radii, in 1/(their unit).
 
     ``distance`` is |r − s|, for radii so close that their difference has lost its digits.
@@ -24,7 +26,7 @@ def kernel(r, s, distance=None):
     return 4 / (np.pi * larger) * ellipkm1(complement)
 
 
-def influence(nodes, spacing, masses):
+def influence(nodes: np.ndarray, spacing: np.ndarray, masses: np.ndarray) -> np.ndarray:
     """Symmetric matrix G with (K p)(r_i) = Σ_j G_ij m_j p_j.
 
     Parameters
@@ -44,7 +46,7 @@ def influence(nodes, spacing, masses):
     return matrix
 
 
-def _correct_near_axis(matrix, nodes, masses):
+def _correct_near_axis(matrix: np.ndarray, nodes: np.ndarray, masses: np.ndarray) -> None:
     """Make rows near the axis exact for a Gaussian pressure.
 
     There the singularity at r = s and its mirror image at r = −s are only a few nodes apart. The

@@ -4,6 +4,7 @@ from abc import abstractmethod
 from collections.abc import Hashable
 from dataclasses import dataclass
 from functools import lru_cache
+from typing import Any
 
 import numpy as np
 
@@ -48,7 +49,9 @@ class Layered(HalfSpace):
         added = hankel.excess(mesh.nodes, lambda k: self.factor(k * ratio), hankel.HIGHEST / ratio)
         return super().influence(mesh, frame) + added
 
-    def depth(self, tip, radius, modulus: float, work_of_adhesion: float) -> np.ndarray:
+    def depth(
+        self, tip: Any, radius: np.ndarray, modulus: float, work_of_adhesion: float
+    ) -> np.ndarray:
         """Depth of a tip in contacts of some radii (m), m, shape (n,); see ``bodies.hankel``.
 
         Contacts wider than 4 lengths count with the weights of one as wide as that.

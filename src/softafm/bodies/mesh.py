@@ -11,7 +11,7 @@ Euler-Maclaurin terms of their two ends are folded into the masses there.
 """
 
 from functools import lru_cache
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -37,21 +37,21 @@ class UnitMesh(NamedTuple):
     """√(1 + x²) at the nodes, x the argument of each asinh in j(ξ): shape (2, n)."""
 
 
-def node_index(radius, edge_spacing: float, growth: float):
+def node_index(radius: Any, edge_spacing: float, growth: float) -> Any:
     """Fractional node index j(ξ) of the mesh map at ``radius`` ξ."""
     inner = np.arcsinh(growth * (radius - 1) / edge_spacing)
     outer = np.arcsinh(growth * (radius + 1) / edge_spacing)
     return (inner + outer) / growth
 
 
-def _spacing(radius, edge_spacing: float, growth: float):
+def _spacing(radius: Any, edge_spacing: float, growth: float) -> Any:
     """dξ/dj at ``radius`` ξ."""
     inner = 1 / np.hypot(edge_spacing, growth * (radius - 1))
     outer = 1 / np.hypot(edge_spacing, growth * (radius + 1))
     return 1 / (inner + outer)
 
 
-def _masses(nodes, spacing):
+def _masses(nodes: np.ndarray, spacing: np.ndarray) -> np.ndarray:
     """Weights of ∫ f ξ dξ = Σ masses·f for even f: corrected trapezoids in j.
 
     At the axis w = ξ dξ/dj is odd, w ≈ w₁ j + w₃ j³/6; the Euler-Maclaurin terms (f w)'/12 and

@@ -10,10 +10,12 @@ v = 1, Bessel functions f_j = J0(α_j r), α_j the zeros of J1, with v = r. Then
 functions). Zeros of J1, not of J0: they leave the value at the rim free.
 """
 
+from collections.abc import Callable
 from functools import lru_cache
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from softafm.bodies.kernel import kernel
 
@@ -48,7 +50,7 @@ def wavenumbers(basis: str, count: int) -> np.ndarray:
     return np.concatenate([[0.0], jn_zeros(1, count - 1)]) if count > 1 else np.zeros(1)
 
 
-def evaluate(basis: str, count: int, r) -> np.ndarray:
+def evaluate(basis: str, count: int, r: ArrayLike) -> np.ndarray:
     """f_j(r): shape (r, count)."""
     from scipy.special import j0
 
@@ -63,7 +65,7 @@ def norms(basis: str, count: int) -> np.ndarray:
     return evaluate(basis, count, 1.0) ** 2 / 2
 
 
-def project(basis: str, count: int, function) -> np.ndarray:
+def project(basis: str, count: int, function: Callable[[np.ndarray], np.ndarray]) -> np.ndarray:
     """Coefficients (count,) of ``function`` on (0, 1): ∫ f_j function v dr / ζ_j."""
     points, weights = _gauss(100 + 4 * count)
     if basis == "bessel":

@@ -5,10 +5,12 @@ D(r, a) = ∫_0^a k(r, s) s ds (Johnson 1985, Contact Mechanics, section 3.4); a
 difference of two discs. The logarithmic singularity of the kernel is integrated exactly.
 """
 
+from typing import Any
+
 import numpy as np
 
 
-def disc(r, a):
+def disc(r: Any, a: Any) -> np.ndarray:
     """D(r, a) at radii ``r`` ≥ 0 for disc radii ``a`` ≥ 0 that broadcast, in their unit."""
     from scipy.special import ellipe, ellipkm1
 
@@ -22,7 +24,7 @@ def disc(r, a):
     return 4 / np.pi * larger * (ellipe(m) - np.where(r > a, outside, 0.0))
 
 
-def ring_influence(radii, edges):
+def ring_influence(radii: np.ndarray, edges: np.ndarray) -> np.ndarray:
     """Matrix of the displacement at ``radii`` (n,) by unit pressure on each ring.
 
     Rings lie between neighbours of ``edges`` (m + 1,); returns shape (n, m), in the unit of both.

@@ -24,9 +24,9 @@ POINTS = 6
 
 @dataclass(frozen=True)
 class _Operator:
-    """A body on a mesh; what ``key`` does not tell makes no difference."""
+    """A body on a mesh; what ``key`` does not hold makes no difference."""
 
-    key: tuple
+    key: tuple[Any, ...]
     body: Body = field(compare=False)
     mesh: UnitMesh = field(compare=False)
 

@@ -10,7 +10,7 @@ if TYPE_CHECKING:
 from softafm.checks.suggestions import guess
 
 _LONGEST_SHOWN = 60
-_MOST_TOLD = 50
+_MOST_LISTED = 50
 _OTHER_NAMES = {
     "W": ("work_of_adhesion",),
     "E0": ("G0",),
@@ -25,9 +25,9 @@ class ConfigError(ValueError):
     """An experiment file or an override that cannot be used: one line for each problem."""
 
     def __init__(self, problems: Sequence[str]):
-        lines = [_escape(problem) for problem in problems[:_MOST_TOLD]]
-        if len(problems) > _MOST_TOLD:
-            lines.append(f"and {len(problems) - _MOST_TOLD} more like these")
+        lines = [_escape(problem) for problem in problems[:_MOST_LISTED]]
+        if len(problems) > _MOST_LISTED:
+            lines.append(f"and {len(problems) - _MOST_LISTED} more like these")
         super().__init__("\n".join(lines))
 
 

@@ -185,7 +185,7 @@ def _draw_frames(movie: _Movie, dpi: int, report_frame: FrameReport) -> Iterator
         report_frame(index)
 
 
-def _write_gif(movie: _Movie, path, seconds: float, report_frame: FrameReport) -> None:
+def _write_gif(movie: _Movie, path: str, seconds: float, report_frame: FrameReport) -> None:
     """Write the frames with one palette for all, for then only what moves takes space."""
     from PIL import Image
 
@@ -220,7 +220,7 @@ def _find_ffmpeg() -> str | None:
     return shutil.which("ffmpeg")
 
 
-def _write_mp4(movie: _Movie, path, seconds: float, report_frame: FrameReport) -> None:
+def _write_mp4(movie: _Movie, path: str, seconds: float, report_frame: FrameReport) -> None:
     """Pipe the frames to ffmpeg."""
     dpi = _DPI[".mp4"]
     width, height = (round(dpi * inches) for inches in _SIZE)
@@ -244,7 +244,7 @@ def _write_mp4(movie: _Movie, path, seconds: float, report_frame: FrameReport) -
             raise RuntimeError(f"ffmpeg could not write the movie: {reason}")
 
 
-def _write_html(movie: _Movie, path, seconds: float, report_frame: FrameReport) -> None:
+def _write_html(movie: _Movie, path: str, seconds: float, report_frame: FrameReport) -> None:
     """Write a page that draws the profiles itself, from whole numbers in fractions of a pixel."""
     scenes, view = movie.scenes, movie.view
     in_radius, in_height = movie.scale.tolist()
@@ -254,10 +254,10 @@ def _write_html(movie: _Movie, path, seconds: float, report_frame: FrameReport) 
     seen = np.union1d(seen[:: ceil(seen.size / _PAGE_POINTS)], seen[-1:])
     quantum = 2e-4 * (view.top - view.bottom)
 
-    def quantise(values):
+    def quantise(values: np.ndarray) -> list[int]:
         return np.round(values / quantum).astype(int).tolist()
 
-    def shorten(values, digits=5):
+    def shorten(values: np.ndarray, digits: int = 5) -> list[float]:
         return [float(f"{value:.{digits}g}") for value in values]
 
     data = {

@@ -61,7 +61,9 @@ def draw_approach_curve(runs: list[xr.Dataset], names: list[str]) -> Figure:
     return figure
 
 
-def _draw(ax: Axes, runs: list[Curves], jumps: list[dict], abscissa: str, ordinate: str) -> None:
+def _draw(
+    ax: Axes, runs: list[Curves], jumps: list[dict[str, Any]], abscissa: str, ordinate: str
+) -> None:
     """Draw solutions, sweeps and jumps of all runs, in the prefixes that suit them."""
     scales = []
     for name, label in ((abscissa, ax.set_xlabel), (ordinate, ax.set_ylabel)):

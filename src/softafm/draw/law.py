@@ -109,7 +109,14 @@ def _measure_width(law: SurfaceLaw) -> float:
     return law.range if law.work_of_adhesion > 0 else law.gap_of_largest_tension
 
 
-def _draw(ax: "Axes", gap, curves, names, depths, title: tuple[str, str]) -> None:
+def _draw(
+    ax: "Axes",
+    gap: np.ndarray,
+    curves: list[Any],
+    names: Sequence[str],
+    depths: list[float],
+    title: tuple[str, str],
+) -> None:
     """Draw curves against the gap, down to the deepest well and up as far again."""
     from softafm.draw.style import choose_factor, choose_line, tidy, write_label
 

@@ -10,6 +10,7 @@ from softafm.checks.kinds import check_list
 from softafm.draw.style import choose_factor, choose_labels, find_prefix, write_label
 
 if TYPE_CHECKING:
+    from matplotlib.axes import Axes
     from xarray import Dataset
 
 _COLOURS = {
@@ -94,7 +95,7 @@ def plot_map(
     return figure
 
 
-def _draw(figure, ax, run: "Dataset", name: str) -> None:
+def _draw(figure: "Figure", ax: "Axes", run: "Dataset", name: str) -> None:
     """Draw one image with its colour bar."""
     variable = run[name]
     values, unit = variable.values, variable.attrs.get("units", "")

@@ -111,7 +111,7 @@ def _crop(axes: np.ndarray, runs: list[xr.Dataset], layout: Layout) -> None:
 def _add_legend(
     figure: Figure, axes: np.ndarray, runs: list[xr.Dataset], names: list[str], layout: Layout
 ) -> None:
-    """Tell runs and strokes apart, and say the scalars of the title."""
+    """Add the legend of runs and strokes, and the scalars of the title."""
     entries, stroke = make_run_entries(names), _make_stroke_entries(runs)
     if len(axes) == 1:
         axes[0].legend(handles=entries + stroke, frameon=False)

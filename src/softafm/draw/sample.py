@@ -1,7 +1,7 @@
 """The figure of a sample: creep and relaxation over time, storage and loss over frequency."""
 
 from math import pi
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -62,7 +62,7 @@ def plot_rheology(
     return figure
 
 
-def choose_times(sample: Solid, measured: tuple | None = None) -> tuple[float, float]:
+def choose_times(sample: Solid, measured: tuple[Any, ...] | None = None) -> tuple[float, float]:
     """Return shortest and longest time, s, of the data, or else of the sample."""
     if measured:
         return 1 / (2 * pi * measured[0][-1]), 1 / (2 * pi * measured[0][0])
@@ -96,7 +96,9 @@ def draw_steps(ax: "Axes", sample: Solid, time: np.ndarray) -> None:
     _set_logarithmic(against_compliance, "Time", "s", right=True)
 
 
-def draw_moduli(ax: "Axes", sample: Solid, time: np.ndarray, measured: tuple | None = None) -> None:
+def draw_moduli(
+    ax: "Axes", sample: Solid, time: np.ndarray, measured: tuple[Any, ...] | None = None
+) -> None:
     """Draw storage and loss modulus at ω = 1/``time`` (s, rising), and measured ones as points."""
     from softafm.draw.style import HOLLOW, choose_factor, write_label
 
@@ -115,7 +117,7 @@ def draw_moduli(ax: "Axes", sample: Solid, time: np.ndarray, measured: tuple | N
     ax.legend(frameon=False)
 
 
-def _choose_styles():
+def _choose_styles() -> tuple[dict[str, Any], dict[str, Any]]:
     """Styles of what is stored and what is lost: by colour and by dashes."""
     from softafm.draw.style import RETRACT, choose_line
 

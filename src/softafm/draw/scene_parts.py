@@ -2,7 +2,7 @@
 
 from collections.abc import Callable
 from math import floor, log10
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -19,7 +19,7 @@ SAMPLE_COLOURS = ("#b5d7ee", "#0072B2")
 Writer = Callable[[float], str]
 
 
-def draw(ax: "Axes", scenes: Scenes, index: int, view: View) -> tuple:
+def draw(ax: "Axes", scenes: Scenes, index: int, view: View) -> tuple[Any, ...]:
     """Draw tip and sample at one instant; return sample, tip and the line of the flat surface."""
     across, along = scale = choose_scales(view)
     (body, line), (ground, skin) = TIP_COLOURS, SAMPLE_COLOURS

@@ -35,7 +35,7 @@ class Scenes(NamedTuple):
         corners = np.array([r[-1], r[0]])
         beyond = view.top - view.bottom
 
-        def outline(half, edge):
+        def outline(half: np.ndarray, edge: float) -> np.ndarray:
             heights = np.concatenate([half[::-1], half, [edge, edge]])
             return np.array([np.concatenate([r, corners]), heights])
 
@@ -123,7 +123,7 @@ def measure_changes(force: np.ndarray, surface: np.ndarray) -> np.ndarray:
 
 
 def find_jumping_steps(time: np.ndarray, jumps: np.ndarray) -> np.ndarray:
-    """Tell which steps (n - 1,) between instants (n,) hold an elastic jump."""
+    """Return which steps (n - 1,) between instants (n,) hold an elastic jump."""
     return np.isin(np.arange(1, time.size), np.searchsorted(time, jumps))
 
 
@@ -139,7 +139,7 @@ def interpolate_scenes(result: "Dataset", instants: np.ndarray) -> Scenes:
     jumps = find_jumping_steps(time, result["jump_time"].values)
     share = np.where(jumps[before] & (share < 1), 0.0, share)
 
-    def at(values):
+    def at(values: np.ndarray) -> np.ndarray:
         weight = share.reshape(-1, *[1] * (values.ndim - 1))
         return (1 - weight) * values[before] + weight * values[after]
 
@@ -154,7 +154,7 @@ def interpolate_scenes(result: "Dataset", instants: np.ndarray) -> Scenes:
     )
 
 
-def _estimate_velocity(time, height, jumps) -> np.ndarray:
+def _estimate_velocity(time: np.ndarray, height: np.ndarray, jumps: np.ndarray) -> np.ndarray:
     """Velocity at every instant, the mean of the steps before and after; a jump is no motion."""
     slope = np.where(jumps, 0.0, np.diff(height) / np.diff(time))
     smooth = np.where(jumps, 0.0, 1.0)

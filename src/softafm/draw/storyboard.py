@@ -113,7 +113,7 @@ def choose_instants(result: "Dataset", frames: int, start: float, stop: float) -
     return instants
 
 
-def _show_both_sides(instants, before: float, after: float, lowest: float) -> None:
+def _show_both_sides(instants: Any, before: float, after: float, lowest: float) -> None:
     """Move the pictures next to a jump to its two sides, but not that of the lowest height."""
     second = int(np.searchsorted(instants, after))
     if second < instants.size and instants[second] != lowest:

@@ -27,7 +27,7 @@ _STYLES: Final = (APPROACH, RETRACT)
 
 
 def choose_labels(
-    noun: str, things: Sequence, labels: Sequence[str] | None, usual: Iterable[str]
+    noun: str, things: Sequence[Any], labels: Sequence[str] | None, usual: Iterable[str]
 ) -> list[str]:
     """Return a label for each thing to draw, the usual ones by default.
 

@@ -1,7 +1,7 @@
 """A table for people: what a run found."""
 
 import json
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from rich.table import Table
@@ -47,7 +47,7 @@ def list_observables(dataset: "Dataset") -> Table:
     return table
 
 
-def _add_check(table: Table, attributes: dict, differences: dict[str, float]) -> None:
+def _add_check(table: Table, attributes: dict[str, Any], differences: dict[str, float]) -> None:
     """Add how far a run is from the finer one."""
     if "check_tolerance" in attributes:
         against = f"at tolerance {attributes['check_tolerance']:.4g}"

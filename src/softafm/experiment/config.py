@@ -18,6 +18,7 @@ from softafm.modes import MODES, Inputs, Mode, Settings
 from softafm.modes.check import plan_finer_run
 from softafm.modes.perform import simulate
 from softafm.modes.start import refuse_start_inside, refuse_unable, regularise_contact
+from softafm.solvers.solver import Solver
 
 if TYPE_CHECKING:
     from xarray import Dataset
@@ -56,7 +57,7 @@ class Experiment:
     contact: Contact
     motion: Any
     cantilever: Any = None
-    solver: Any = None
+    solver: Solver | None = None
     tolerance: float = 1e-2
     profiles: bool = False
     check: bool = False
@@ -268,7 +269,7 @@ def build_experiment(
     elif "cantilever" in document:
         levers = [each.name for each in MODES.values() if each.lever]
         problems.append(
-            f"cantilever: of no use with mode = '{mode.name}'; leave it out, or use the mode "
+            f"cantilever: not used with mode = '{mode.name}'; leave it out, or use the mode "
             f"{join_with_or(levers)}"
         )
     built: dict[str, Any] = {}
@@ -278,16 +279,7 @@ def build_experiment(
         except ConfigError as error:
             problems += str(error).splitlines()
     run, solver = built.get("run", schema.Run()), built.get("solver")
-    if solver is not None and not solver.adaptive and "tolerance" in run.model_fields_set:
-        problems.append(
-            f"run.tolerance = {run.tolerance}: the solver '{solver.kind}' takes fixed steps, which "
-            "no tolerance changes; leave it out and use solver.steps"
-        )
-    if run.profiles and mode is not None and not mode.takes_profiles:
-        problems.append(
-            f"run.profiles = True: of no use with mode = '{mode.name}', which keeps observables "
-            "and no shapes of the surface; leave it out"
-        )
+    problems += _list_unusable(run, solver, mode)
     if problems or mode is None:
         raise ConfigError(problems)
     contact = Contact(tip=built["tip"], sample=built["sample"], surface=built["surface"])
@@ -311,7 +303,23 @@ def build_experiment(
     )
 
 
-def _refuse_run(contact: Contact, solver: Any, run: schema.Run, document: Mapping) -> None:
+def _list_unusable(run: schema.Run, solver: Solver | None, mode: Mode | None) -> Iterator[str]:
+    """Yield a line for each option of a run that its solver or its mode cannot use."""
+    if solver is not None and not solver.adaptive and "tolerance" in run.model_fields_set:
+        yield (
+            f"run.tolerance = {run.tolerance}: the solver '{solver.kind}' takes fixed steps, which "
+            "no tolerance changes; leave it out and use solver.steps"
+        )
+    if run.profiles and mode is not None and not mode.takes_profiles:
+        yield (
+            f"run.profiles = True: not used with mode = '{mode.name}', which keeps observables "
+            "and no shapes of the surface; leave it out"
+        )
+
+
+def _refuse_run(
+    contact: Contact, solver: Solver | None, run: schema.Run, document: Mapping[str, Any]
+) -> None:
     """Raise ConfigError if the run cannot be checked, or the contact not be regularised."""
     written = document.get("run", {})
     try:
@@ -323,15 +331,15 @@ def _refuse_run(contact: Contact, solver: Any, run: schema.Run, document: Mappin
         raise ConfigError([f"run.{key} = {show(written[key])}: {reason}"]) from None
 
 
-def _refuse_flow(contact: Contact, mode: Mode, motion: Any, written: dict) -> None:
+def _refuse_flow(contact: Contact, mode: Mode, motion: Any, written: dict[str, Any]) -> None:
     """Raise ConfigError if cycles are to be steady on a sample that flows."""
     if contact.body.compliance.fluidity == 0:
         return
     if mode.steady:
         raise ConfigError(
             [
-                f"mode = '{mode.name}': of no use, as the sample '{contact.sample.kind}' flows and "
-                "the tip sinks deeper with every cycle"
+                f"mode = '{mode.name}': cannot be used, as the sample '{contact.sample.kind}' "
+                "flows and the tip sinks deeper with every cycle"
             ]
         )
     if is_steady(motion):
@@ -344,7 +352,9 @@ def _refuse_flow(contact: Contact, mode: Mode, motion: Any, written: dict) -> No
         )
 
 
-def _refuse_motion(contact: Contact, motion: Any, solver: Any, written: dict) -> None:
+def _refuse_motion(
+    contact: Contact, motion: Any, solver: Solver | None, written: dict[str, Any]
+) -> None:
     """Raise ConfigError if the motion starts inside the surface or the solver cannot follow it."""
     try:
         refuse_start_inside(contact, motion)

@@ -74,7 +74,7 @@ def _read_number(written: Any) -> float:
 def make_check(check: Callable[[float], float]) -> AfterValidator:
     """Return what refuses a number for the reason that a check gives after its name and value.
 
-    What an object would refuse anyway is so told of all values at once, before it is made.
+    What an object would refuse anyway is so reported for all values at once, before it is made.
     """
 
     def checked(number: float) -> float:

@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 _CHECKED, _TENTH = 4, 2.8
 """By experience: runs that one with its check is worth, and one with a tenth of the tolerance."""
 _USUAL = 1e-2
-"""Tolerance for which solvers tell what to expect."""
+"""Tolerance for which solvers state what to expect."""
 _FLOWS = "flows"
 _SOFT, _ADVISED = 30, 8
 """Tabor number from which on another is advised."""
@@ -131,7 +131,7 @@ def _reason_of_cost(experiment: "Experiment", contact: "Contact", case: Foreseen
 
 
 def _add_tip(found: list[Row], contact: "Contact") -> None:
-    """Tell the radius that counts."""
+    """Show the radius that counts."""
     name, words = "effective radius", f"of the {contact.tip.kind}, where it is one reach high"
     if isinstance(contact.tip, Paraboloid):
         name, words = "tip radius", contact.tip.kind
@@ -139,7 +139,7 @@ def _add_tip(found: list[Row], contact: "Contact") -> None:
 
 
 def _add_adhesion(found: list[Row], contact: "Contact") -> None:
-    """Tell how soft the contact is for its adhesion, and how wide the tension zone."""
+    """Show how soft the contact is for its adhesion, and how wide the tension zone."""
     law = contact.surface
     work = write_quantity(law.work_of_adhesion, "J/m²")
     if not contact.adhesive:
@@ -158,7 +158,7 @@ def _add_adhesion(found: list[Row], contact: "Contact") -> None:
 
 
 def _add_regularisation(found: list[Row], experiment: "Experiment", contact: "Contact") -> None:
-    """Tell what became of a soft contact, or what could."""
+    """Show what became of a soft contact, or what could."""
     given = experiment.contact
     if experiment.regularise is not None:
         length = contact.surface.range
@@ -178,7 +178,7 @@ def _add_regularisation(found: list[Row], experiment: "Experiment", contact: "Co
 
 
 def _add_sample(found: list[Row], contact: "Contact", duration: float, whole: str) -> None:
-    """Tell how much the sample softens in the motion (s), and how."""
+    """Show how much the sample softens in the motion (s), and how."""
     sample = contact.rheology
     creep = sample.compliance
     times = creep.retardation_times
@@ -219,7 +219,7 @@ def _elements(count: int) -> str:
 
 
 def _name_slow_modulus(contact: "Contact") -> str:
-    """Tell which modulus stands for the long run."""
+    """Return the name of the modulus that stands for the long run."""
     if contact.body.compliance.fluidity:
         return f"at {write_quantity(contact.softened_modulus, 'Pa')} as flow sets in"
     return "slow"

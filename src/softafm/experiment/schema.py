@@ -222,10 +222,10 @@ class TrajectoryMotion(Table):
 
     def build(self) -> Trajectory:
         if self.noise is not None and not self.measured:
-            raise ValueError("noise = : of no use without measured = true")
+            raise ValueError("noise = : not used without measured = true")
         if self.smooth and self.measured:
             raise ValueError(
-                "smooth = True: of no use with measured = true, which is smooth between corners"
+                "smooth = True: not used with measured = true, which is smooth between corners"
             )
         samples = self.file.time, self.file.heights
         if not self.measured:
@@ -364,7 +364,7 @@ def _find_key_type(name: str, declared: Any) -> Any:
 class Thing(Table):
     """A tip, sample or surface law, which one of several constructors makes of the keys."""
 
-    constructors: ClassVar[tuple[Callable, ...]]
+    constructors: ClassVar[tuple[Callable[..., Any], ...]]
 
     def build(self) -> Any:
         given = {key: getattr(self, key) for key in self.model_fields_set}
@@ -379,7 +379,9 @@ class Thing(Table):
         )
 
 
-def _make_table(*constructors: Callable, file: Callable[[Path], Any] | None = None) -> type[Thing]:
+def _make_table(
+    *constructors: Callable[..., Any], file: Callable[[Path], Any] | None = None
+) -> type[Thing]:
     """Return the table of what a class, or another of its constructors, makes.
 
     ``file`` reads what the constructor takes as such.
@@ -394,17 +396,17 @@ def _make_table(*constructors: Callable, file: Callable[[Path], Any] | None = No
     return table
 
 
-def _list_ways(constructors: tuple[Callable, ...]) -> tuple[tuple[str, ...], ...]:
+def _list_ways(constructors: tuple[Callable[..., Any], ...]) -> tuple[tuple[str, ...], ...]:
     """Return for each constructor the keys that it needs and not all do."""
     common = _find_common_keys(constructors)
     return tuple(tuple(k for k in _list_keys(c)[0] if k not in common) for c in constructors)
 
 
-def _find_common_keys(constructors: tuple[Callable, ...]) -> set[str]:
+def _find_common_keys(constructors: tuple[Callable[..., Any], ...]) -> set[str]:
     return set.intersection(*(set(_list_keys(make)[0]) for make in constructors))
 
 
-def _list_keys(constructor: Callable) -> tuple[list[str], dict[str, str]]:
+def _list_keys(constructor: Callable[..., Any]) -> tuple[list[str], dict[str, str]]:
     """Return the keys that a constructor needs, and of each it knows the name of its parameter."""
     parameters = signature(constructor).parameters
     key_of = {name: _KEY_OF.get(name, name) for name in parameters}
@@ -620,7 +622,12 @@ def build_choice(
 
 
 def build_kind(
-    name: str, written: Mapping, table: type[Table], *, chooser: str | None = None, folder: Path
+    name: str,
+    written: Mapping[str, Any],
+    table: type[Table],
+    *,
+    chooser: str | None = None,
+    folder: Path,
 ) -> Any:
     """Build what a table of a known kind describes; ConfigError if it cannot be."""
     keys = {key: value for key, value in written.items() if key != chooser}

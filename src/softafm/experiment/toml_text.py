@@ -26,7 +26,7 @@ def parse(text: str) -> dict[str, Any]:
     return tables
 
 
-def parse_apart(text: str) -> tuple[dict[str, Any], list]:
+def parse_apart(text: str) -> tuple[dict[str, Any], list[Any]]:
     """Return what ``parse`` does for ``softafm.files.guard``; dates, which none needs, as texts."""
     return _plain(parse(text)), []
 

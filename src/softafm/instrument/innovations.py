@@ -5,14 +5,14 @@ from math import log
 import numpy as np
 
 _MOST = 32
-"""Earlier samples, at most, from which the noise of the next one is foretold."""
+"""Earlier samples, at most, from which the noise of the next one is predicted."""
 
 
 def judge_residuals(left: np.ndarray, smallest: float) -> tuple[float, int]:
-    """Return the cost of residuals, and from how many earlier ones each is best foretold.
+    """Return the cost of residuals, and from how many earlier ones each is best predicted.
 
     The cost is n·log v + order·log n, with the variance v of what an autoregression of that order
-    does not foretell: −2 log of the likelihood, with the price of Schwarz' criterion. The order is
+    does not predict: −2 log of the likelihood, with the price of Schwarz' criterion. The order is
     the one that costs least, 0 for white noise.
 
     Parameters
@@ -20,7 +20,7 @@ def judge_residuals(left: np.ndarray, smallest: float) -> tuple[float, int]:
     left
         Residuals of evenly spaced samples, or nearly so, shape (n,).
     smallest
-        Standard deviation below which nothing is told apart.
+        Standard deviation below which nothing is distinguished.
 
     Notes
     -----

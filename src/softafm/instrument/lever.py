@@ -53,7 +53,7 @@ class Rigid:
     stiffness = inf
 
     @property
-    def compiled_response(self):
+    def compiled_response(self) -> tuple[Any, Any, np.ndarray]:
         from softafm.instrument.compiled_levers import hold, remember_nothing
 
         return hold, remember_nothing, np.empty(0)
@@ -87,11 +87,11 @@ class Spring:
     stiffness: float
     creep_time: float = 0.0
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         object.__setattr__(self, "stiffness", check_positive("stiffness", self.stiffness, "N/m"))
 
     @property
-    def compiled_response(self):
+    def compiled_response(self) -> tuple[Any, Any, np.ndarray]:
         from softafm.instrument.compiled_levers import bend, remember_nothing
 
         return bend, remember_nothing, np.array([self.stiffness, self.creep_time])

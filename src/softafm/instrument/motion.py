@@ -1,11 +1,13 @@
 """What a motion is: what modes and solvers ask of one, and whether an object keeps to it."""
 
-from collections.abc import Callable
-from typing import Any, Protocol
+from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
 
 from softafm.checks.kinds import members, refuse_incomplete
+
+if TYPE_CHECKING:
+    from softafm.compiled.functions import CompiledFunction
 
 _PROBES = np.linspace(0.013, 0.987, 24)
 """Parts of every smooth piece at which a motion is tried; none of a regular pattern."""
@@ -43,7 +45,7 @@ class Motion(Protocol):
         """Velocity at ``time`` (s, an array or a number), m/s; at a corner, that after it."""
 
     @property
-    def compiled_height(self) -> tuple[Callable, np.ndarray]:
+    def compiled_height(self) -> tuple["CompiledFunction", np.ndarray]:
         """A function decorated with ``compile_when_used(HEIGHT)``, and its parameters (n,)."""
 
 

@@ -2,7 +2,7 @@
 
 Besides its parameters a motion tells the solver where it is not smooth (``breaks``), which instants
 matter (``landmarks``), how fast it gets (``top_speed``), and its height as a compiled function.
-One whose speed varies may tell how fast it gets for a while (``top_speed_between``).
+One whose speed varies may state how fast it gets for a while (``top_speed_between``).
 """
 
 from dataclasses import dataclass, replace

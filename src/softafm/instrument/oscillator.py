@@ -12,6 +12,7 @@ heights go together; the slow drift of amplitude and phase away from them says w
 
 from dataclasses import dataclass
 from math import hypot, pi
+from typing import Any
 
 import numpy as np
 
@@ -46,17 +47,17 @@ class Drive:
         """Amplitude F0 of the drive, N."""
         return self.free_amplitude * hypot(*self._against)
 
-    def components(self, amplitude, virial, dissipation):
+    def components(self, amplitude: Any, virial: Any, dissipation: Any) -> tuple[Any, Any]:
         """F0 cos φ and F0 sin φ that hold an amplitude (m) under V and E (J), in N."""
         elastic, viscous = self._against
         in_phase = elastic * amplitude - 2 * virial / amplitude
         return in_phase, viscous * amplitude + dissipation / (pi * amplitude)
 
-    def excess(self, amplitude, virial, dissipation):
+    def excess(self, amplitude: Any, virial: Any, dissipation: Any) -> Any:
         """Force needed to hold an amplitude over that of the drive, less 1: 0 on a solution."""
         return np.hypot(*self.components(amplitude, virial, dissipation)) / self.force - 1
 
-    def strongest_push(self, amplitude):
+    def strongest_push(self, amplitude: Any) -> np.ndarray:
         """Largest −2V/A, N, against which the drive holds an amplitude, without dissipation."""
         elastic, viscous = self._against
         left = self.force**2 - (viscous * amplitude) ** 2
@@ -68,12 +69,12 @@ class Drive:
         """Largest E, J, that the drive can feed into a tap: πA(F0 − k A r/Q) at its maximum."""
         return pi * self.force**2 / (4 * self._against[1])
 
-    def phase(self, amplitude, virial, dissipation):
+    def phase(self, amplitude: Any, virial: Any, dissipation: Any) -> Any:
         """Lag φ of the deflection behind the drive, degrees."""
         in_phase, behind = self.components(amplitude, virial, dissipation)
         return np.degrees(np.arctan2(behind, in_phase))
 
-    def second_harmonic(self, amplitude, virial, dissipation):
+    def second_harmonic(self, amplitude: Any, virial: Any, dissipation: Any) -> Any:
         """Second harmonic of the deflection over its first, which the balance leaves out.
 
         The tip's force has the components 2V/A and E/(πA) at the drive's frequency; that of a
@@ -85,7 +86,14 @@ class Drive:
         force = np.hypot(2 * virial / amplitude, 2 * dissipation / (pi * amplitude))
         return force / (yields * amplitude)
 
-    def stable(self, amplitude, virial, dissipation, virial_slope, dissipation_slope):
+    def stable(
+        self,
+        amplitude: Any,
+        virial: Any,
+        dissipation: Any,
+        virial_slope: Any,
+        dissipation_slope: Any,
+    ) -> Any:
         """Whether a solution attracts, from dV/dA and dE/dA at fixed height of the lever, J/m.
 
         Averaged over a cycle, up to the factor 1/2mω,

@@ -6,10 +6,12 @@ from typing import Any
 import numpy as np
 
 from softafm.checks.gathering import Placed, collect_warnings, keep_worst
+from softafm.contact import Contact
 from softafm.errors import AccuracyWarning, DivergedError
 from softafm.maps.imaging import ForceVolume
 from softafm.modes.force_distance import force_distance
 from softafm.modes.spectroscopy import force_spectroscopy
+from softafm.solvers.solver import Solver
 
 NAMES = (
     "lowest_height", "force_max", "force_min", "force_min_approach", "loop_energy", "viscous_loss",
@@ -23,10 +25,10 @@ class Curves:
     """Computes force curves; ``options`` go to the mode."""
 
     imaging: ForceVolume
-    solver: Any
+    solver: Solver
     tolerance: float
 
-    def __call__(self, contacts: list) -> tuple[np.ndarray, dict[int, str], list[Placed]]:
+    def __call__(self, contacts: list[Contact]) -> tuple[np.ndarray, dict[int, str], list[Placed]]:
         """Return ``NAMES`` of contacts (contacts, names), why some failed, and their warnings."""
         values, reasons = np.full((len(contacts), len(NAMES)), np.nan), {}
         warned: list[Placed] = []
@@ -40,8 +42,9 @@ class Curves:
             warned += [(i, each) for each in keep_worst(found)]
         return values, reasons, warned
 
-    def _scalars(self, contact) -> list[float]:
-        imaging, options = self.imaging, {"solver": self.solver, "tolerance": self.tolerance}
+    def _scalars(self, contact: Contact) -> list[float]:
+        imaging = self.imaging
+        options: dict[str, Any] = {"solver": self.solver, "tolerance": self.tolerance}
         if imaging.cantilever is None:
             curve, path = force_distance(contact, imaging.motion, **options), "tip_height"
         else:

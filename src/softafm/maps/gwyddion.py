@@ -1,7 +1,7 @@
 """Maps as files of Gwyddion, the program in which AFM images are looked at (gwyddion.net)."""
 
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -48,7 +48,7 @@ def export_gwyddion(result: "Dataset", path: str | Path, *, overwrite: bool = Fa
     x, y = result["x"].values, result["y"].values
     extent = {"xreal": float(x[0] + x[-1]), "yreal": float(y[0] + y[-1])}
 
-    def channel(values, unit: str):
+    def channel(values: np.ndarray, unit: str) -> Any:
         return GwyDataField(
             np.ascontiguousarray(values, float), **extent,
             si_unit_xy=GwySIUnit(unitstr="m"), si_unit_z=GwySIUnit(unitstr=unit),

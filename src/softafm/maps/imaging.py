@@ -6,6 +6,7 @@ from typing import ClassVar, Literal
 from softafm.checks.kinds import refuse_other
 from softafm.checks.validate import check_choice, check_finite, check_positive
 from softafm.instrument.cantilever import Cantilever
+from softafm.instrument.motion import Motion
 from softafm.instrument.motions import Sine, Trajectory, Triangle
 from softafm.modes.driven import make_drive
 from softafm.modes.start import refuse_other_than_cantilever
@@ -71,7 +72,7 @@ class ForceVolume:
     """
 
     kind: ClassVar[str] = "force-volume"
-    motion: Triangle | Sine | Trajectory
+    motion: Motion
     cantilever: Cantilever | None = None
 
     def __post_init__(self) -> None:

@@ -112,7 +112,7 @@ def build_map(document: Mapping[str, Any], folder: Path) -> MapExperiment:
     known = ["mode", "tip", "cantilever", "motion", "map", "run"]
     problems = [refuse_unknown(key, known, key) for key in document if key not in known]
 
-    def read(name: str, build: Callable[[dict], Any]) -> Any:
+    def read(name: str, build: Callable[[dict[str, Any]], Any]) -> Any:
         try:
             if name not in document:
                 raise ConfigError([f"{name}: missing; add a table [{name}]"])

@@ -70,7 +70,7 @@ class MapTable(Table):
 
     @field_validator("materials")
     @classmethod
-    def _build_materials(cls, written: tuple[Any, ...], info: ValidationInfo) -> tuple:
+    def _build_materials(cls, written: tuple[Any, ...], info: ValidationInfo) -> tuple[Any, ...]:
         found, problems = [], []
         for index, each in enumerate(written):
             name = f"materials[{index}]"

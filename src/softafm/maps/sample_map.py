@@ -276,7 +276,7 @@ def find_grey_values(image: ArrayLike | str | Path) -> np.ndarray:
     return grey
 
 
-def _check_image(name: str, values) -> np.ndarray:
+def _check_image(name: str, values: Any) -> np.ndarray:
     """Return the values of all pixels as floats, or raise ValueError naming the one that is not."""
     refuse_masked(name, values)
     try:
@@ -295,7 +295,7 @@ def _check_image(name: str, values) -> np.ndarray:
     return array
 
 
-def _check_size(size, shape) -> tuple[float, float]:
+def _check_size(size: Any, shape: tuple[int, int]) -> tuple[float, float]:
     if np.ndim(size) == 0:
         width = check_positive("size", size, "m")
         return width, width * shape[0] / shape[1]
@@ -304,11 +304,11 @@ def _check_size(size, shape) -> tuple[float, float]:
     return check_positive("size[0]", size[0], "m"), check_positive("size[1]", size[1], "m")
 
 
-def _split(values: Mapping[str, float]):
+def _split(values: Mapping[str, float]) -> list[tuple[tuple[str, ...], float]]:
     return [(tuple(name.split(".", 1)), value) for name, value in values.items()]
 
 
-def _has_number(thing, name: str) -> bool:
+def _has_number(thing: Any, name: str) -> bool:
     return any(entry.name == name for entry in fields(thing))
 
 

@@ -2,7 +2,7 @@
 
 import json
 import warnings
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from concurrent.futures import ProcessPoolExecutor
 from concurrent.futures.process import BrokenProcessPool
 from functools import partial
@@ -14,6 +14,7 @@ import numpy as np
 from softafm.checks.gathering import Placed, gather
 from softafm.checks.kinds import refuse_other
 from softafm.checks.validate import check_tabor, check_tolerance, check_whole
+from softafm.contact import Contact
 from softafm.errors import AccuracyWarning
 from softafm.maps import curve_pixels, tapped_lines
 from softafm.maps.imaging import AmplitudeModulation, ForceVolume
@@ -26,6 +27,7 @@ from softafm.modes.start import (
 )
 from softafm.progress import Progress, make_reporter
 from softafm.results.datasets import assemble_history, describe, describe_misfit
+from softafm.solvers.solver import Solver
 
 if TYPE_CHECKING:
     from xarray import Dataset
@@ -38,12 +40,15 @@ _UNITS = {
     "work_of_adhesion": "J/m²", "poisson": "1",
 }  # fmt: skip
 
+_Taken = tuple[Sequence[str], np.ndarray, list[list[Any]], list[Placed], dict[str, int]]
+"""Names and values of the maps, failures, doubts, and what was done, counted."""
+
 
 def scan(
     sample: SampleMap,
     imaging: AmplitudeModulation | ForceVolume,
     *,
-    solver: Any = None,
+    solver: Solver | None = None,
     tolerance: float = 1e-2,
     regularise: float | None = None,
     workers: int = 1,
@@ -96,18 +101,20 @@ def scan(
     if regularise is not None:
         tabor = check_tabor("regularise", regularise)
         contacts = [_call_at_pixel(sample, i, c.regularised, tabor) for i, c in enumerate(contacts)]
-    take: Callable
+    options = solver, tolerance, workers
+    take: Callable[[Progress | None], _Taken]
+    refuse: Callable[[Contact], None]
     if isinstance(imaging, AmplitudeModulation):
-        take, refuse = _tap_map, refuse_tapped_flow
+        take = partial(_tap_map, sample, contacts, imaging, *options)
+        refuse = refuse_tapped_flow
     else:
         refuse_unable(solver, imaging.motion)
-        take, refuse = _take_curves, partial(refuse_start_inside, motion=imaging.motion)
+        take = partial(_take_curves, sample, contacts, imaging, *options)
+        refuse = partial(refuse_start_inside, motion=imaging.motion)
     for i, contact in enumerate(contacts):
         _call_at_pixel(sample, i, refuse, contact)
     with make_reporter(progress) as report:
-        names, values, failures, doubts, done = take(
-            sample, contacts, imaging, solver, tolerance, workers, report
-        )
+        names, values, failures, doubts, done = take(report)
     warned = _collect_warnings(failures, doubts, sample)
     for warning in warned:
         warnings.warn(warning, stacklevel=2)
@@ -118,7 +125,9 @@ def scan(
     return result
 
 
-def _call_at_pixel(sample: SampleMap, number: int, function, *arguments):
+def _call_at_pixel(
+    sample: SampleMap, number: int, function: Callable[..., Any], *arguments: Any
+) -> Any:
     """Call a function on behalf of a contact; its ValueError names the first such pixel."""
     try:
         return function(*arguments)
@@ -127,7 +136,15 @@ def _call_at_pixel(sample: SampleMap, number: int, function, *arguments):
         raise ValueError(f"pixel ({i}, {j}): {error}") from None
 
 
-def _tap_map(sample, contacts, imaging, solver, tolerance, workers, report):
+def _tap_map(
+    sample: SampleMap,
+    contacts: list[Contact],
+    imaging: AmplitudeModulation,
+    solver: Solver,
+    tolerance: float,
+    workers: int,
+    report: Progress | None,
+) -> _Taken:
     """Go down the first column, along a few lines, then along all others."""
     pixels = sample.pixels
     spots = [
@@ -163,13 +180,23 @@ def _tap_map(sample, contacts, imaging, solver, tolerance, workers, report):
     return tapped_lines.NAMES, values, failures, doubts, {"taps": taps}
 
 
-def _tap_line(setpoint, task) -> tapped_lines.Taken:
+def _tap_line(
+    setpoint: tapped_lines.Setpoint, task: tuple[list[tapped_lines.Spot], int, tapped_lines.Known]
+) -> tapped_lines.Taken:
     """Take one line, from what is known of the first column and the lines rehearsed."""
     spots, branch, known = task
     return tapped_lines.walk(setpoint, spots, branch, known.copy())
 
 
-def _take_curves(sample, contacts, imaging, solver, tolerance, workers, report):
+def _take_curves(
+    sample: SampleMap,
+    contacts: list[Contact],
+    imaging: ForceVolume,
+    solver: Solver,
+    tolerance: float,
+    workers: int,
+    report: Progress | None,
+) -> _Taken:
     """Take a force curve of each different contact."""
     tasks = [contacts[i : i + _CURVES_A_TASK] for i in range(0, len(contacts), _CURVES_A_TASK)]
     curves = curve_pixels.Curves(imaging, solver, tolerance)
@@ -193,10 +220,16 @@ def _take_curves(sample, contacts, imaging, solver, tolerance, workers, report):
     return curve_pixels.NAMES, table[number], failures, doubts, {"curves": len(contacts)}
 
 
-def _run_each(function: Callable, tasks: list, workers: int, report, noun: str) -> Iterator[Any]:
+def _run_each(
+    function: Callable[[Any], Any],
+    tasks: Sequence[Any],
+    workers: int,
+    report: Progress | None,
+    noun: str,
+) -> Iterator[Any]:
     """Yield what a function makes of tasks, in their order, from so many processes."""
 
-    def count(results):
+    def count(results: Iterable[Any]) -> Iterator[Any]:
         for done, result in enumerate(results, start=1):
             if report is not None:
                 report(done / len(tasks), f"{noun} {done} of {len(tasks)}")
@@ -217,7 +250,9 @@ def _run_each(function: Callable, tasks: list, workers: int, report, noun: str) 
         ) from None
 
 
-def _collect_warnings(failures, doubts: list[Placed], sample: SampleMap) -> list[AccuracyWarning]:
+def _collect_warnings(
+    failures: list[list[Any]], doubts: list[Placed], sample: SampleMap
+) -> list[AccuracyWarning]:
     """What to warn of: pixels without a result, and what solvers said."""
     number = sample.pixels.number
 
@@ -236,7 +271,16 @@ def _collect_warnings(failures, doubts: list[Placed], sample: SampleMap) -> list
     return [*failed, *gather(doubts, len(sample.pixels.contacts), "different pixels", where)]
 
 
-def _assemble(sample, imaging, solver, tolerance, names, values, warned, done) -> "Dataset":
+def _assemble(
+    sample: SampleMap,
+    imaging: AmplitudeModulation | ForceVolume,
+    solver: Solver,
+    tolerance: float,
+    names: Sequence[str],
+    values: np.ndarray,
+    warned: list[AccuracyWarning],
+    done: dict[str, int],
+) -> "Dataset":
     """Assemble the maps, the fields of the sample and the provenance."""
     from xarray import Variable
 
@@ -275,6 +319,6 @@ def _assemble(sample, imaging, solver, tolerance, names, values, warned, done) -
     return result
 
 
-def _describe(contact) -> dict:
+def _describe(contact: Contact) -> dict[str, Any]:
     parts = {name: describe(getattr(contact, name)) for name in ("tip", "sample", "surface")}
     return {**parts, **describe_misfit(contact.rheology)}

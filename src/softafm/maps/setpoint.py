@@ -7,11 +7,12 @@ curve.
 """
 
 from dataclasses import dataclass, field
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
 from softafm.checks.gathering import collect_warnings
+from softafm.contact import Contact
 from softafm.errors import AccuracyWarning, DivergedError
 from softafm.instrument.motions import Sine
 from softafm.instrument.oscillator import Drive
@@ -19,6 +20,7 @@ from softafm.modes.amplitude_curve import AmplitudeCurve
 from softafm.modes.driven import doubt_sine
 from softafm.modes.tap_map import OBSERVABLES, TapMap
 from softafm.modes.tapping import observe_taps
+from softafm.solvers.solver import Solver
 
 ATTRACTIVE, REPULSIVE = 0, 1
 BRANCHES = ("attractive", "repulsive")
@@ -76,12 +78,12 @@ class Setpoint:
     drive: Drive
     frequency: float
     amplitude: float
-    solver: Any
+    solver: Solver
     tolerance: float
     taps: int = 0
     warned: list[AccuracyWarning] = field(default_factory=list)
 
-    def tap(self, contact, approach: float, amplitude: float | None = None) -> np.ndarray:
+    def tap(self, contact: Contact, approach: float, amplitude: float | None = None) -> np.ndarray:
         """``OBSERVABLES`` of a steady tap of a closest approach, m."""
         amplitude = self.amplitude if amplitude is None else amplitude
         with collect_warnings(self.warned):
@@ -91,7 +93,7 @@ class Setpoint:
         found = observe_taps(contact, motion, history)
         return np.array([found[name] for name in OBSERVABLES])
 
-    def excess(self, values) -> float:
+    def excess(self, values: np.ndarray) -> float:
         """Force needed over that of the drive, less 1."""
         return float(self.drive.excess(self.amplitude, values[0], values[1]))
 
@@ -100,11 +102,11 @@ class Setpoint:
         if (doubtful := doubt_sine(self.drive, self.amplitude, *point.values[:2])) is not None:
             self.warned.append(doubtful)
 
-    def phase(self, values) -> float:
+    def phase(self, values: np.ndarray) -> float:
         """Lag of the deflection behind the drive, degrees."""
         return float(self.drive.phase(self.amplitude, values[0], values[1]))
 
-    def follow(self, contact, start: Point, guess: float) -> Point | None:
+    def follow(self, contact: Contact, start: Point, guess: float) -> Point | None:
         """Solution that continues one of a similar contact, or None if that leads nowhere.
 
         Parameters
@@ -135,7 +137,7 @@ class Setpoint:
             approach += float(np.clip(step, -farthest, farthest))
         return None
 
-    def survey(self, contact) -> list[Point]:
+    def survey(self, contact: Contact) -> list[Point]:
         """All solutions that the feedback can hold, from far to near."""
         taps = TapMap(
             lambda amplitude, approach: self.tap(contact, approach, amplitude),
@@ -158,7 +160,7 @@ class Setpoint:
                 points.append(Point(approach, values, slopes, BRANCHES.index(branch), True))
         return sorted(points, key=lambda point: -point.approach)
 
-    def start_anew(self, contact, branch: int) -> Point:
+    def start_anew(self, contact: Contact, branch: int) -> Point:
         """Solution on a branch, or on the other one if there is none; raises ``Lost``."""
         points = self.survey(contact)
         same = [point for point in points if point.branch == branch]
@@ -169,7 +171,7 @@ class Setpoint:
         return (chosen if exact is None else exact)._replace(measured=True, surveyed=True)
 
     def carry(
-        self, contact, start: Point | None, guess: float, branch: int, other_guess: float
+        self, contact: Contact, start: Point | None, guess: float, branch: int, other_guess: float
     ) -> Point:
         """Solution on the branch that a lever comes along, or that it jumps to.
 
@@ -198,7 +200,7 @@ class Setpoint:
         """Whether the phase alone says that it is the branch it is."""
         return (self.phase(point.values) > 90) == (point.branch == ATTRACTIVE)
 
-    def _excess_slope(self, values, slopes) -> float:
+    def _excess_slope(self, values: np.ndarray, slopes: np.ndarray) -> float:
         """Slope of the excess along d, 1/m: that of hypot(c, s)/F0."""
         A = self.amplitude
         c, s = self.drive.components(A, values[0], values[1])

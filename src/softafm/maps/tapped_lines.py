@@ -9,18 +9,20 @@ of a few lines that are taken before all others, and of the line.
 
 import warnings
 from dataclasses import dataclass, field
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
 from softafm.checks.gathering import Placed, keep_worst
 from softafm.checks.validate import check_tolerance
+from softafm.contact import Contact
 from softafm.errors import AccuracyWarning, DivergedError
 from softafm.maps.imaging import AmplitudeModulation
 from softafm.maps.setpoint import ATTRACTIVE, REPULSIVE, Lost, Point, Setpoint
 from softafm.modes.approach import approach_curve
 from softafm.modes.driven import make_drive
 from softafm.modes.tap_map import OBSERVABLES
+from softafm.solvers.solver import Solver
 
 NAMES = ("mean_height", "phase", "branch", *OBSERVABLES)
 _NEAREST = 8
@@ -32,7 +34,7 @@ class Spot(NamedTuple):
     """A pixel's contact, its number among all, and where it stands among them."""
 
     number: int
-    contact: Any
+    contact: Contact
     place: np.ndarray
     label: int
 
@@ -101,7 +103,7 @@ class Taken:
     taps: int
 
 
-def make_setpoint(imaging: AmplitudeModulation, solver, tolerance: float) -> Setpoint:
+def make_setpoint(imaging: AmplitudeModulation, solver: Solver, tolerance: float) -> Setpoint:
     """Return what finds the taps of a way of imaging."""
     drive, frequency = make_drive(
         imaging.cantilever, imaging.free_amplitude, imaging.drive_frequency
@@ -134,7 +136,9 @@ def walk(setpoint: Setpoint, spots: list[Spot], branch: int, known: Known) -> Ta
     return Taken(values, reasons, warned, setpoint.taps - started)
 
 
-def _solve(setpoint, spot: Spot, branch: int, known: Known, last: Point | None) -> Point | str:
+def _solve(
+    setpoint: Setpoint, spot: Spot, branch: int, known: Known, last: Point | None
+) -> Point | str:
     """The solution of one contact that is new, or why there is none."""
     unit, other = spot.contact.reach, 1 - branch
     near, crossed = known.find_near(spot, branch, unit), known.find_near(spot, other, unit)
@@ -154,7 +158,9 @@ def _solve(setpoint, spot: Spot, branch: int, known: Known, last: Point | None) 
     return point
 
 
-def find_engaged_branch(imaging: AmplitudeModulation, contact, solver, tolerance: float) -> int:
+def find_engaged_branch(
+    imaging: AmplitudeModulation, contact: Contact, solver: Solver, tolerance: float
+) -> int:
     """Branch on which a lever that comes down meets the setpoint."""
     if imaging.engaged != "approach":
         return ATTRACTIVE if imaging.engaged == "attractive" else REPULSIVE

@@ -1,9 +1,12 @@
 """All pairs of amplitude and height that a driven lever can have, and those that it takes."""
 
-from typing import NamedTuple
+from collections.abc import Callable, Iterable
+from typing import Any, NamedTuple
 
 import numpy as np
 
+from softafm.instrument.oscillator import Drive
+from softafm.modes.tap_map import TapMap
 from softafm.results.content import BRANCHES
 
 _APPROACHES, _AMPLITUDES = 2000, 400
@@ -45,16 +48,16 @@ class AmplitudeCurve:
         The ``softafm.instrument.oscillator.Drive`` of the lever.
     """
 
-    def __init__(self, taps, drive):
+    def __init__(self, taps: TapMap, drive: Drive):
         self._taps, self._drive = taps, drive
 
-    def at_amplitudes(self, amplitudes) -> Solutions:
+    def at_amplitudes(self, amplitudes: np.ndarray) -> Solutions:
         """All solutions of given amplitudes, m, shape (n,)."""
         approaches = np.linspace(self._taps.farthest, self._taps.nearest, _APPROACHES)
         row, approach = _find_zeros(lambda a, d: self._excess(a, d), amplitudes, approaches)
         return self._solutions(row, amplitudes[row], approach)
 
-    def at_heights(self, heights) -> Solutions:
+    def at_heights(self, heights: np.ndarray) -> Solutions:
         """All solutions at given mean heights, m, shape (n,), within the amplitudes of the map."""
         span = 1e-3 * (self._taps.highest - self._taps.lowest)
         amplitudes = np.linspace(self._taps.lowest - span, self._taps.highest + span, _AMPLITUDES)
@@ -65,7 +68,7 @@ class AmplitudeCurve:
         """Observables of solutions, shape (7, n)."""
         return self._taps.observables(solutions.amplitude, solutions.approach)
 
-    def swept(self, heights):
+    def swept(self, heights: np.ndarray) -> tuple[np.ndarray, ...]:
         """What is recorded at heights, m, passed one after the other, and then all the way back.
 
         Two arrays: amplitude, phase and observables, (9, n) in the order of ``heights``. The lever
@@ -77,11 +80,11 @@ class AmplitudeCurve:
         there = range(heights.size)
         return tuple(_follow(columns, found, way) for way in (there, reversed(there)))
 
-    def _excess(self, amplitude, approach):
+    def _excess(self, amplitude: np.ndarray, approach: np.ndarray) -> np.ndarray:
         values = self._taps.virial_and_dissipation(amplitude, approach)
         return self._drive.excess(amplitude, *values)
 
-    def _solutions(self, row, amplitude, approach) -> Solutions:
+    def _solutions(self, row: np.ndarray, amplitude: np.ndarray, approach: np.ndarray) -> Solutions:
         """Phase and stability; the slopes are those at fixed height, where d falls as A rises."""
         step = 1e-3 * np.minimum(amplitude, self._taps.unit)
         more, less = (
@@ -92,7 +95,7 @@ class AmplitudeCurve:
         return Solutions(row, amplitude, approach, self._drive.phase(amplitude, *values), stable)
 
 
-def _follow(columns, found: Solutions, way) -> np.ndarray:
+def _follow(columns: np.ndarray, found: Solutions, way: Iterable[int]) -> np.ndarray:
     """Return the column of ``columns`` (m, solutions) that a lever takes in each row of ``found``.
 
     ``way`` is the order in which the rows, all of them, are passed.
@@ -108,7 +111,9 @@ def _follow(columns, found: Solutions, way) -> np.ndarray:
     return values
 
 
-def _find_zeros(function, rows, points):
+def _find_zeros(
+    function: Callable[[Any, Any], Any], rows: np.ndarray, points: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
     """Zeros of function(row, point) between neighbours of ``points``, for every row at once.
 
     Returns the indices of the rows and the zeros, to 1e-9 of the distance of neighbours; values of

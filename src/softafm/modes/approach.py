@@ -4,9 +4,9 @@ Rajabifar et al. 2021, equations (29) to (32), and their general form off resona
 """
 
 import json
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -18,6 +18,7 @@ from softafm.contact import Contact
 from softafm.errors import AccuracyWarning
 from softafm.instrument.cantilever import Cantilever
 from softafm.instrument.motions import Sine
+from softafm.instrument.oscillator import Drive
 from softafm.modes.amplitude_curve import BRANCHES, AmplitudeCurve, Solutions
 from softafm.modes.driven import (
     AmplitudeSweep,
@@ -34,7 +35,8 @@ from softafm.modes.start import choose_solver, refuse_tapped_flow
 from softafm.modes.tap_map import OBSERVABLES, TapMap
 from softafm.modes.tapping import observe_taps
 from softafm.progress import Progress, make_reporter
-from softafm.results.content import DIRECTIONS, observables
+from softafm.results.content import DIRECTIONS, Labelled, observables
+from softafm.solvers.solver import Solver
 from softafm.units.quantities import write_quantity
 
 if TYPE_CHECKING:
@@ -52,7 +54,7 @@ def approach_curve(
     amplitude_ratio: ArrayLike,
     *,
     drive_frequency: float | None = None,
-    solver: Any = None,
+    solver: Solver | None = None,
     tolerance: float = 1e-2,
     progress: bool | Progress | None = None,
     check: bool = False,
@@ -116,7 +118,7 @@ def _simulate(inputs: Inputs, settings: Settings) -> Outcome:
 
     doubts: list[Placed] = []
 
-    def tap(amplitude, approach):
+    def tap(amplitude: float, approach: float) -> np.ndarray:
         warned: list[AccuracyWarning] = []
         with collect_warnings(warned):
             motion = Sine(amplitude + approach, amplitude, frequency, "steady")
@@ -163,8 +165,14 @@ def _solutions_to_check(found: Solutions) -> np.ndarray:
     return np.unique(np.linspace(0, count - 1, min(count, _CHECKS)).astype(int))
 
 
-def _collect_warnings(taps, tap, drive, tolerance, found: Solutions) -> Iterator[AccuracyWarning]:
-    """Tell of missing and surplus solutions, and run a few again to see whether they hold."""
+def _collect_warnings(
+    taps: TapMap,
+    tap: Callable[[float, float], np.ndarray],
+    drive: Drive,
+    tolerance: float,
+    found: Solutions,
+) -> Iterator[AccuracyWarning]:
+    """Yield warnings of solutions that are missing, too many, or do not hold when run again."""
     if found.amplitude.size == 0:
         yield AccuracyWarning("no height goes with any of the amplitudes: there is nothing to plot")
         return
@@ -195,7 +203,9 @@ def _collect_warnings(taps, tap, drive, tolerance, found: Solutions) -> Iterator
             )
 
 
-def _make_tables(curve: AmplitudeCurve, ratios, found: Solutions):
+def _make_tables(
+    curve: AmplitudeCurve, ratios: np.ndarray, found: Solutions
+) -> tuple[dict[str, Labelled], dict[str, Labelled]]:
     """Return variables and coordinates of the dataset, each as (dims, values)."""
     names = ("mean_height", "phase", *OBSERVABLES)
     table = np.full((len(names), len(BRANCHES), ratios.size), np.nan)
@@ -203,7 +213,7 @@ def _make_tables(curve: AmplitudeCurve, ratios, found: Solutions):
     branch = found.branch
     for i in np.argsort(found.approach):  # the farthest last
         table[:, BRANCHES.index(branch[i]), found.row[i]] = columns[:, i]
-    data: dict[str, tuple] = {
+    data: dict[str, Labelled] = {
         name: (("branch", "amplitude_ratio"), values)
         for name, values in zip(names, table, strict=True)
     }
@@ -213,7 +223,7 @@ def _make_tables(curve: AmplitudeCurve, ratios, found: Solutions):
     for label, values in zip(("approach", "retract"), curve.swept(sweep), strict=True):
         for name, row in zip(names, values, strict=True):
             data[f"{label}_{name}"] = ("sweep_height", row)
-    coordinates = {
+    coordinates: dict[str, Labelled] = {
         "branch": ("branch", list(BRANCHES)),
         "amplitude_ratio": ("amplitude_ratio", ratios),
         "sweep_height": ("sweep_height", sweep),

@@ -4,7 +4,7 @@ import json
 import warnings
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple, cast
 
 import numpy as np
 
@@ -14,6 +14,7 @@ from softafm.errors import AccuracyWarning, DivergedError
 from softafm.modes.start import choose_solver
 from softafm.progress import Progress, make_reporter
 from softafm.results.datasets import describe
+from softafm.solvers.solver import Solver
 
 if TYPE_CHECKING:
     from xarray import DataArray, Dataset
@@ -29,7 +30,7 @@ _DOUBLED = ("steps", "nodes", "functions")
 class Finer:
     """How a run is repeated: the ``solver`` and ``tolerance``, and that ``in_words``."""
 
-    solver: Any
+    solver: Solver
     tolerance: float
     in_words: str
 
@@ -43,7 +44,7 @@ class Difference(NamedTuple):
     units: str
 
 
-def plan_finer_run(check: bool, solver, tolerance: float) -> Finer | None:
+def plan_finer_run(check: bool, solver: Solver | None, tolerance: float) -> Finer | None:
     """Return how to repeat a run of a solver (None: the default one); None without a check.
 
     A tenth of the tolerance, at least 1e-5; of a solver of fixed steps twice the steps, nodes and
@@ -67,7 +68,7 @@ def plan_finer_run(check: bool, solver, tolerance: float) -> Finer | None:
         return Finer(solver, tighter, f"tolerance = {tighter:.4g}")
     doubled = {name: 2 * getattr(solver, name) for name in _DOUBLED if hasattr(solver, name)}
     try:
-        finer = replace(solver, **doubled)
+        finer = replace(cast(Any, solver), **doubled)
     except (TypeError, ValueError) as error:
         raise ValueError(
             f"check = True: the solver '{solver.kind}' cannot be run twice as fine: {error}"
@@ -131,7 +132,9 @@ def compare_with_finer(
         warn_caller(AccuracyWarning(problem))
 
 
-def _run_again(finer: Finer, repeat, progress) -> "Dataset":
+def _run_again(
+    finer: Finer, repeat: Callable[..., "Dataset"], progress: bool | Progress | None
+) -> "Dataset":
     """Run again, without the warnings of that run."""
     with warnings.catch_warnings(), make_reporter(progress) as report:
         warnings.simplefilter("ignore", AccuracyWarning)

@@ -4,6 +4,7 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from softafm.checks.validate import check_finite, check_positive, refuse_masked
 from softafm.contact import Contact
@@ -26,7 +27,7 @@ class AmplitudeSweep:
     drive_frequency: float | None = None
 
 
-def ratios_of(values) -> np.ndarray:
+def ratios_of(values: ArrayLike) -> np.ndarray:
     """Return amplitude ratios as an array, or raise ValueError naming the one that is not."""
     refuse_masked("amplitude_ratio", values)
     try:
@@ -43,7 +44,9 @@ def ratios_of(values) -> np.ndarray:
     return array
 
 
-def make_drive(cantilever: Cantilever, free_amplitude, drive_frequency=None) -> tuple[Drive, float]:
+def make_drive(
+    cantilever: Cantilever, free_amplitude: float, drive_frequency: float | None = None
+) -> tuple[Drive, float]:
     """Return the drive of a lever and its frequency, Hz; ValueError if it cannot be driven."""
     quality, resonance = cantilever.quality_factor, cantilever.frequency
     if quality is None or resonance is None:
@@ -55,7 +58,9 @@ def make_drive(cantilever: Cantilever, free_amplitude, drive_frequency=None) -> 
     return Drive(cantilever.stiffness, quality, frequency / resonance, free_amplitude), frequency
 
 
-def estimate_deepest_tap(contact: Contact, drive: Drive, frequency: float, amplitudes) -> Sine:
+def estimate_deepest_tap(
+    contact: Contact, drive: Drive, frequency: float, amplitudes: np.ndarray
+) -> Sine:
     """Estimate which tap of several amplitudes, m, indents most, before any run.
 
     A brief contact has V = −A F with the mean force F, at most half of what the drive can push
@@ -74,7 +79,9 @@ def estimate_deepest_tap(contact: Contact, drive: Drive, frequency: float, ampli
     return Sine(amplitude - float(depth[deepest]), amplitude, frequency, "steady")
 
 
-def doubt_sine(drive: Drive, amplitude, virial, dissipation) -> AccuracyWarning | None:
+def doubt_sine(
+    drive: Drive, amplitude: ArrayLike, virial: ArrayLike, dissipation: ArrayLike
+) -> AccuracyWarning | None:
     """Return what to warn of where a lever would not move as a sine, or nothing.
 
     Amplitudes, m, virials and dissipations, J, of solutions: arrays of one shape, or numbers.

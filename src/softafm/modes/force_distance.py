@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from softafm.contact import Contact
+from softafm.instrument.motion import Motion
 from softafm.instrument.motions import Sine, Trajectory, Triangle
 from softafm.modes.mode import Mode
 from softafm.modes.parts import Layout
@@ -12,6 +13,7 @@ from softafm.modes.perform import perform
 from softafm.progress import Progress
 from softafm.results.content import RAMPED, observables
 from softafm.solvers.history import History
+from softafm.solvers.solver import Solver
 
 if TYPE_CHECKING:
     from xarray import Dataset
@@ -19,9 +21,9 @@ if TYPE_CHECKING:
 
 def force_distance(
     contact: Contact,
-    motion: Triangle | Sine | Trajectory,
+    motion: Motion,
     *,
-    solver: Any = None,
+    solver: Solver | None = None,
     tolerance: float = 1e-2,
     profiles: bool = False,
     progress: bool | Progress | None = None,
@@ -46,7 +48,7 @@ def force_distance(
         None, True for a bar, or a callable (fraction, message).
     check
         Repeat the run at a tenth of the tolerance, or with twice the steps and nodes of a solver of
-        fixed steps, and tell the differences in the attributes ``check_...``. One above the
+        fixed steps, and state the differences in the attributes ``check_...``. One above the
         tolerance raises ``AccuracyWarning``.
     regularise
         Tabor number, 0.1 to 100, to which that of a softer contact is lowered by enlarging the

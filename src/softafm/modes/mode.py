@@ -25,6 +25,10 @@ Values = Mapping[str, Any]
 _NUMBERS, _HISTORY = Axes(), Layout()
 
 
+def _keep(motion: Any) -> Any:
+    return motion
+
+
 @dataclass(frozen=True, eq=False)
 class Mode:
     """All that the rest of the program needs to know of a mode.
@@ -90,7 +94,7 @@ class Mode:
     observables: Mapping[str, Observable]
     observe: "Callable[[Contact, Any, History], Values] | None" = None
     simulate: "Callable[[Inputs, Settings], Outcome] | None" = None
-    path: Callable[[Any], Any] = lambda motion: motion
+    path: Callable[[Any], Any] = _keep
     lever: Literal["", "stiffness", "resonator"] = ""
     tables: Mapping[str, type] = field(default_factory=dict)
     steady: bool = False
@@ -103,7 +107,7 @@ class Mode:
     gaps: bool = False
     other_names: str = ""
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         if (self.observe is None) == (self.simulate is None):
             raise ValueError(f"mode '{self.name}': must have either observe or simulate")
         check_choice(f"mode '{self.name}': lever", self.lever, ("", "stiffness", "resonator"))

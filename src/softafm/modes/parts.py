@@ -8,6 +8,9 @@ from softafm.progress import Progress
 
 if TYPE_CHECKING:
     from softafm.contact import Contact
+    from softafm.instrument.motion import Motion
+    from softafm.results.content import Labelled
+    from softafm.solvers.solver import Solver
 
 
 class Inputs(NamedTuple):
@@ -36,7 +39,7 @@ class Inputs(NamedTuple):
 class Settings(NamedTuple):
     """How a run is to be carried out: the options of ``force_distance`` of these names."""
 
-    solver: Any = None
+    solver: "Solver | None" = None
     tolerance: float = 1e-2
     profiles: bool = False
     progress: bool | Progress | None = None
@@ -50,10 +53,10 @@ class Outcome(NamedTuple):
     """
 
     parts: Mapping[str, Any]
-    solver: Any
+    solver: "Solver"
     tolerance: float
-    data: dict[str, tuple]
-    coordinates: dict[str, tuple]
+    data: dict[str, "Labelled"]
+    coordinates: dict[str, "Labelled"]
     warnings: tuple[Warning, ...] = ()
     diagnostics: Mapping[str, float] = MappingProxyType({})
 
@@ -83,7 +86,7 @@ class Foreseen(NamedTuple):
         What else is worth knowing.
     """
 
-    motion: Any
+    motion: "Motion"
     runs: int = 1
     noun: str = "motion"
     depth: str = ""
@@ -118,7 +121,7 @@ class Layout(NamedTuple):
     cropped
         Whether panels show only where there is a force.
     title
-        Scalars to be told above, each with a name for it.
+        Scalars shown above, each with a name for it.
     """
 
     panels: tuple[tuple[str, str], ...] = (("time", "force"), ("tip_height", "force"))

@@ -15,6 +15,7 @@ from softafm.modes.start import carry, refuse_other_than_cantilever, regularise_
 from softafm.progress import Progress
 from softafm.results.content import HISTORY
 from softafm.results.datasets import assemble_history, history_variables, record_regularisation
+from softafm.solvers.solver import Solver
 
 if TYPE_CHECKING:
     from xarray import Dataset
@@ -27,7 +28,7 @@ def perform(
     cantilever: Cantilever | None = None,
     *,
     tables: Mapping[str, Any] = MappingProxyType({}),
-    solver=None,
+    solver: Solver | None = None,
     tolerance: float = 1e-2,
     profiles: bool = False,
     progress: bool | Progress | None = None,

@@ -4,7 +4,7 @@ from typing import TYPE_CHECKING, Any
 
 from softafm.contact import Contact
 from softafm.instrument.cantilever import Cantilever
-from softafm.instrument.motions import Sine, Trajectory, Triangle
+from softafm.instrument.motion import Motion
 from softafm.modes.force_distance import MOTIONS, measure_ramp
 from softafm.modes.mode import Mode
 from softafm.modes.parts import Layout
@@ -12,6 +12,7 @@ from softafm.modes.perform import perform
 from softafm.progress import Progress
 from softafm.results.content import RAMPED, observables
 from softafm.solvers.history import History
+from softafm.solvers.solver import Solver
 
 if TYPE_CHECKING:
     from xarray import Dataset
@@ -20,9 +21,9 @@ if TYPE_CHECKING:
 def force_spectroscopy(
     contact: Contact,
     cantilever: Cantilever,
-    motion: Triangle | Sine | Trajectory,
+    motion: Motion,
     *,
-    solver: Any = None,
+    solver: Solver | None = None,
     tolerance: float = 1e-2,
     profiles: bool = False,
     progress: bool | Progress | None = None,

@@ -1,6 +1,7 @@
 """What all modes begin with: checks, and a run of the solver."""
 
 from dataclasses import replace
+from typing import Any
 
 from softafm.checks.callers import warn_caller
 from softafm.checks.kinds import refuse_other
@@ -8,13 +9,22 @@ from softafm.checks.validate import check_tabor, check_tolerance
 from softafm.contact import Contact
 from softafm.errors import AccuracyWarning
 from softafm.instrument.cantilever import Cantilever
-from softafm.instrument.motion import check_motion, find_setpoint, is_steady, list_doubts
-from softafm.progress import make_reporter
+from softafm.instrument.motion import Motion, check_motion, find_setpoint, is_steady, list_doubts
+from softafm.progress import Progress, make_reporter
 from softafm.solvers.energy import Energy
-from softafm.solvers.solver import check_history, check_solver
+from softafm.solvers.history import History
+from softafm.solvers.solver import Solver, check_history, check_solver
 
 
-def carry(contact, motion, solver, tolerance, profiles, progress, **options):
+def carry(
+    contact: Contact,
+    motion: Motion,
+    solver: Solver | None,
+    tolerance: float,
+    profiles: bool,
+    progress: bool | Progress | None,
+    **options: Any,
+) -> tuple[Solver, float, History]:
     """Carry a contact through a motion; return the solver, the tolerance and the history.
 
     ``solver`` None stands for ``Energy()``. ``options`` go to the solver.
@@ -37,7 +47,7 @@ def carry(contact, motion, solver, tolerance, profiles, progress, **options):
     return solver, tolerance, replace(history, warnings=(*doubts, *history.warnings))
 
 
-def choose_solver(solver):
+def choose_solver(solver: Solver | None) -> Solver:
     """Return the solver of a run, ``Energy()`` for None; ValueError if it is not one."""
     if solver is None:
         return Energy()
@@ -54,7 +64,7 @@ def regularise_contact(contact: Contact, tabor: float | None) -> Contact:
     return contact if tabor is None else contact.regularised(check_tabor("regularise", tabor))
 
 
-def doubt_window(contact, motion) -> tuple[AccuracyWarning, ...]:
+def doubt_window(contact: Contact, motion: Motion) -> tuple[AccuracyWarning, ...]:
     """Return what is to be warned of if a motion is longer than a sample's window, or nothing.
 
     Such a sample has a ``window``, the times (s) over which a chain represents it.
@@ -71,12 +81,12 @@ def doubt_window(contact, motion) -> tuple[AccuracyWarning, ...]:
     return (AccuracyWarning(text, duration / longest),)
 
 
-def refuse_other_than_cantilever(cantilever) -> None:
+def refuse_other_than_cantilever(cantilever: Any) -> None:
     """Raise ValueError if it is not a ``Cantilever``."""
     refuse_other("cantilever", cantilever, Cantilever, "a softafm.Cantilever")
 
 
-def refuse_start_inside(contact, motion) -> None:
+def refuse_start_inside(contact: Contact, motion: Motion) -> None:
     """Raise ValueError if the tip starts below the equilibrium gap, inside the surface.
 
     A steady oscillation may: there the start is forgotten.
@@ -94,7 +104,7 @@ def refuse_start_inside(contact, motion) -> None:
         )
 
 
-def refuse_flow(contact, what: str, remedy: str) -> None:
+def refuse_flow(contact: Contact, what: str, remedy: str) -> None:
     """Raise ValueError if the sample flows, so that no cycle is like the one before.
 
     ``what`` needs a steady cycle; ``remedy`` is what to do instead.
@@ -106,13 +116,13 @@ def refuse_flow(contact, what: str, remedy: str) -> None:
         )
 
 
-def refuse_tapped_flow(contact) -> None:
+def refuse_tapped_flow(contact: Contact) -> None:
     """Raise ValueError if a lever is to keep its amplitude on a sample that flows."""
     remedy = "take tapping_cycle with a number of cycles, or force_distance"
     refuse_flow(contact, "no height goes with an amplitude", remedy)
 
 
-def refuse_unable(solver, motion) -> None:
+def refuse_unable(solver: Solver | None, motion: Motion) -> None:
     """Raise ValueError if a solver of fixed steps is to turn at a force."""
     if solver is None or solver.adaptive:
         return

@@ -6,10 +6,12 @@ constant A, along d as densely as needed, and interpolated: by monotone cubics i
 lines by a polynomial in ln A.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from itertools import pairwise
+from typing import Any
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from softafm.results.content import TAPPED
 
@@ -34,9 +36,14 @@ class TapMap:
     """
 
     def __init__(
-        self, tap: Callable, excess: Callable, lowest: float, highest: float, unit: float,
+        self,
+        tap: Callable[[float, float], ArrayLike],
+        excess: Callable[..., Any],
+        lowest: float,
+        highest: float,
+        unit: float,
         accuracy: float,
-    ):  # fmt: skip
+    ):
         self._tap, self._excess, self._accuracy = tap, excess, accuracy
         self.lowest, self.highest, self.unit = lowest, highest, unit
         lines = _LINES if highest > 1.01 * lowest else 1
@@ -47,7 +54,7 @@ class TapMap:
         self._samples: list[dict[float, np.ndarray]] = [{} for _ in range(lines)]
         self.taps = 0
 
-    def explore(self):
+    def explore(self) -> Iterator[int]:
         """Sample all lines, yielding the number of taps so far after each."""
         self.farthest, self.nearest = self._far_end(), self._deep_end()
         outer = np.geomspace(self.farthest, self.unit, 5)
@@ -60,11 +67,11 @@ class TapMap:
         self._both = [self._interpolant(line, slice(0, 2)) for line in range(self._logs.size)]
         self._all = [self._interpolant(line) for line in range(self._logs.size)]
 
-    def virial_and_dissipation(self, amplitude, approach) -> np.ndarray:
+    def virial_and_dissipation(self, amplitude: ArrayLike, approach: ArrayLike) -> np.ndarray:
         """V and E, J, at amplitudes and closest approaches, m: shape (2, *broadcast)."""
         return self._combine(self._both, amplitude, approach)
 
-    def observables(self, amplitude, approach) -> np.ndarray:
+    def observables(self, amplitude: ArrayLike, approach: ArrayLike) -> np.ndarray:
         """All ``OBSERVABLES`` at amplitudes and closest approaches, m: shape (7, *broadcast)."""
         return self._combine(self._all, amplitude, approach)
 
@@ -77,7 +84,9 @@ class TapMap:
         )
         return float(far - near) / (2 * step)
 
-    def _combine(self, interpolants, amplitude, approach):
+    def _combine(
+        self, interpolants: list[Any], amplitude: ArrayLike, approach: ArrayLike
+    ) -> np.ndarray:
         """Lagrange's polynomial in ln A through the lines, times √A."""
         amplitude, approach = np.broadcast_arrays(amplitude, approach)
         log, total = np.log(amplitude), np.zeros(1)
@@ -97,7 +106,7 @@ class TapMap:
             self.taps += 1
         return known[approach]
 
-    def _excess_at(self, line: int, sample) -> float:
+    def _excess_at(self, line: int, sample: np.ndarray) -> float:
         amplitude = np.exp(self._logs[line])
         return float(self._excess(amplitude, *(np.sqrt(amplitude) * sample[:2])))
 
@@ -123,14 +132,14 @@ class TapMap:
                 deep *= 1.5
         return deep
 
-    def _interpolant(self, line: int, which: slice = slice(None)):
+    def _interpolant(self, line: int, which: slice = slice(None)) -> Any:
         from scipy.interpolate import PchipInterpolator
 
         approaches = sorted(self._samples[line])
         values = [self._samples[line][approach][which] for approach in approaches]
         return PchipInterpolator(approaches, values, extrapolate=False)
 
-    def _refine(self, line: int, start):
+    def _refine(self, line: int, start: np.ndarray) -> Iterator[int]:
         """Halve intervals of a line while their middles are not met by interpolation."""
         intervals = list(pairwise(start))
         while intervals and len(self._samples[line]) < _MOST_SAMPLES:

@@ -1,5 +1,6 @@
 """Tapping: the tip oscillates with given amplitude about a given mean height."""
 
+from collections.abc import Callable
 from itertools import pairwise
 from typing import TYPE_CHECKING, Any, Literal
 
@@ -14,6 +15,7 @@ from softafm.modes.scales import tap_scales
 from softafm.progress import Progress
 from softafm.results.content import observables
 from softafm.solvers.history import History
+from softafm.solvers.solver import Solver
 
 if TYPE_CHECKING:
     from xarray import Dataset
@@ -26,7 +28,7 @@ def tapping_cycle(
     frequency: float,
     cycles: int | Literal["steady"] = "steady",
     *,
-    solver: Any = None,
+    solver: Solver | None = None,
     tolerance: float = 1e-2,
     profiles: bool = False,
     progress: bool | Progress | None = None,
@@ -77,7 +79,7 @@ def observe_taps(contact: Contact, motion: Sine, history: History) -> dict[str, 
     period = 1 / motion.frequency
     tops = period * np.arange(motion.periods + 1)
 
-    def each_cycle(weight):
+    def each_cycle(weight: Callable[[np.ndarray], Any]) -> np.ndarray:
         return np.array([history.integrate(history.force, weight, a, b) for a, b in pairwise(tops)])
 
     virial = each_cycle(lambda t: motion.height(t) - motion.mean_height) / period
@@ -102,7 +104,7 @@ def observe_taps(contact: Contact, motion: Sine, history: History) -> dict[str, 
     }
 
 
-def measure_time_below(time, values, level) -> float:
+def measure_time_below(time: np.ndarray, values: np.ndarray, level: float) -> float:
     """Time during which ``values``, linear between instants, stay below ``level``."""
     below = values < level
     a, b = values[:-1], values[1:]

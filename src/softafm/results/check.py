@@ -134,7 +134,9 @@ def _refuse_words(name: str, described: Mapping[str, Any]) -> None:
         raise ValueError(f"variable '{name}' has the unit {show(units)}: must be {known!r}")
 
 
-def _refuse_shape(name: str, dimensions, values: np.ndarray, variables: Variables) -> None:
+def _refuse_shape(
+    name: str, dimensions: tuple[str, ...], values: np.ndarray, variables: Variables
+) -> None:
     """Refuse a variable that is as long as no other along one of its dimensions."""
     for each, length in zip(dimensions, values.shape, strict=True):
         known = variables[each][1].shape if each in variables else (length,)

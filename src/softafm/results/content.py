@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -95,6 +95,10 @@ REGULARISED = ("regularised_range", "given_tabor", "given_range", "edge_slowed")
 """Attributes, all numbers, of a result whose law had its range enlarged."""
 
 
+Labelled = tuple[str | tuple[str, ...], Any]
+"""Dimensions and values of a variable."""
+
+
 @dataclass(frozen=True)
 class Observable:
     """A variable that a mode adds to results: SI unit, what it is in words, and its dimensions."""
@@ -177,7 +181,7 @@ def declare(mode: str, needed: Needed, observed: Mapping[str, Observable]) -> No
     NEEDED[mode] = needed
 
 
-def make_variable(name: str, dims, values) -> "Variable":
+def make_variable(name: str, dims: str | tuple[str, ...], values: Any) -> "Variable":
     """Return values under a known name, with its unit and long name as attributes.
 
     A name may be prefixed by ``approach_`` or ``retract_``.

@@ -5,7 +5,7 @@ import inspect
 import json
 import os
 import tempfile
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import fields, is_dataclass
 from datetime import UTC, datetime
 from pathlib import Path
@@ -15,7 +15,7 @@ import numpy as np
 
 from softafm.checks.kinds import refuse_non_dataset
 from softafm.checks.paths import explain_no_file
-from softafm.results.content import FORMAT, HISTORY, LARGEST, PROFILES, make_variable
+from softafm.results.content import FORMAT, HISTORY, LARGEST, PROFILES, Labelled, make_variable
 from softafm.results.netcdf import make_file_content
 from softafm.solvers.history import History
 from softafm.version import __version__
@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 
 
 def _assemble(
-    data: "dict[str, Variable]", coordinates: "dict[str, Variable]", attributes: dict
+    data: "dict[str, Variable]", coordinates: "dict[str, Variable]", attributes: dict[str, Any]
 ) -> "Dataset":
     """Return the dataset of variables and of coordinates, each along a dimension of its name."""
     import pandas as pd
@@ -45,7 +45,7 @@ def _assemble(
     return Dataset(data, Coordinates(variables, indexes), attributes)
 
 
-def describe(thing) -> dict:
+def describe(thing: Any) -> dict[str, Any]:
     """Return the kind and the parameters (SI) of a tip, sample, law, motion, solver or stepper.
 
     Those of a class that is no dataclass are its ``description``; {} if it has none.
@@ -57,7 +57,7 @@ def describe(thing) -> dict:
     return {"kind": thing.kind, **values}
 
 
-def _describe_value(value):
+def _describe_value(value: Any) -> Any:
     """Return a parameter as JSON can hold it: of a user's function name and text."""
     if is_dataclass(value):
         return describe(value)
@@ -73,13 +73,17 @@ def _describe_value(value):
     return {"name": f"{function.__module__}.{function.__qualname__}", "source": source}
 
 
-def history_variables(contact, history: History) -> tuple[dict, dict]:
+def history_variables(
+    contact: Any, history: History
+) -> tuple[dict[str, Labelled], dict[str, Labelled]]:
     """Return the curves, jumps and shapes of a history, and their coordinates.
 
     Both by name as (dims, values).
     """
-    data = {name: (dims, getattr(history, name)) for name, dims in HISTORY.items()}
-    coordinates = {"time": ("time", history.time)}
+    data: dict[str, Labelled] = {
+        name: (dims, getattr(history, name)) for name, dims in HISTORY.items()
+    }
+    coordinates: dict[str, Labelled] = {"time": ("time", history.time)}
     if history.profiles is not None:
         shapes = history.profiles
         gap = history.tip_height[:, None] + contact.tip.profile(shapes.radius) - shapes.deformation
@@ -94,22 +98,29 @@ def history_variables(contact, history: History) -> tuple[dict, dict]:
 
 
 def assemble_history(
-    mode: str, contact, parts: Mapping[str, Any], solver, tolerance: float, data, coordinates,
-    warnings, diagnostics,
-) -> "Dataset":  # fmt: skip
+    mode: str,
+    contact: Any,
+    parts: Mapping[str, Any],
+    solver: Any,
+    tolerance: float,
+    data: Mapping[str, Labelled],
+    coordinates: Mapping[str, Labelled],
+    warnings: Sequence[Warning],
+    diagnostics: Mapping[str, Any],
+) -> "Dataset":
     """Assemble a result of variables and coordinates, by name as (dims, values).
 
     ``parts`` are what took part besides the contact, by name: objects, or dictionaries.
     """
 
-    def known(arrays):
+    def known(arrays: Mapping[str, Labelled]) -> "dict[str, Variable]":
         return {name: make_variable(name, dims, values) for name, (dims, values) in arrays.items()}
 
     attributes = _collect_provenance(mode, contact, parts, solver, tolerance, warnings, diagnostics)
     return _assemble(known(data), known(coordinates), attributes)
 
 
-def record_regularisation(result: "Dataset", given, contact, tabor: float | None) -> None:
+def record_regularisation(result: "Dataset", given: Any, contact: Any, tabor: float | None) -> None:
     """Write into a result that the range of a law was enlarged, and what the law was like before.
 
     ``given`` is the contact before, ``tabor`` the number that was asked for; None writes nothing.
@@ -128,7 +139,7 @@ def record_regularisation(result: "Dataset", given, contact, tabor: float | None
     }
 
 
-def compute_edge_slowing(given, longer: float) -> float:
+def compute_edge_slowing(given: Any, longer: float) -> float:
     """Return by what factor the edge of a contact is slower, in cohesive lengths, at a range, m.
 
     That of an elastic one is none the slower for it, 1: no rate matters there.
@@ -138,7 +149,7 @@ def compute_edge_slowing(given, longer: float) -> float:
     return (longer / given.surface.range) ** 2 if rate_matters else 1.0
 
 
-def describe_misfit(sample) -> dict[str, float]:
+def describe_misfit(sample: Any) -> dict[str, float]:
     """Return how well a sample fits the measured moduli it was fitted to; {} for all others."""
     misfit = getattr(sample, "dma_misfit", None)
     if misfit is None:
@@ -146,7 +157,15 @@ def describe_misfit(sample) -> dict[str, float]:
     return dict(zip(("dma_misfit_largest", "dma_misfit_rms"), misfit, strict=True))
 
 
-def _collect_provenance(mode, contact, parts, solver, tolerance, warnings, diagnostics) -> dict:
+def _collect_provenance(
+    mode: str,
+    contact: Any,
+    parts: Mapping[str, Any],
+    solver: Any,
+    tolerance: float,
+    warnings: Sequence[Warning],
+    diagnostics: Mapping[str, Any],
+) -> dict[str, Any]:
     """Return the attributes of a result: its whole input, and how it was computed."""
     things = {"tip": contact.tip, "sample": contact.sample, "surface": contact.surface, **parts}
     experiment = {
@@ -279,7 +298,7 @@ def build_result(content: "Content", arrays: Sequence[np.ndarray]) -> "Dataset":
     return Dataset(made, attrs=_convert_attributes(attributes)).set_coords(coordinates)
 
 
-def _convert_attributes(attributes: Mapping[str, Any]) -> dict:
+def _convert_attributes(attributes: Mapping[str, Any]) -> dict[str, Any]:
     """Return attributes as NumPy's numbers and arrays of numbers, as xarray reads them."""
     return {
         name: value if isinstance(value, str) or _holds_text(value) else np.array(value)[()]
@@ -287,7 +306,7 @@ def _convert_attributes(attributes: Mapping[str, Any]) -> dict:
     }
 
 
-def _holds_text(value) -> bool:
+def _holds_text(value: Any) -> bool:
     return isinstance(value, list) and any(isinstance(each, str) for each in value)
 
 
@@ -326,7 +345,7 @@ def _curve_dimension(result: "Dataset") -> str:
     return next((name for name in [*first, *known] if (name,) in curves), "")
 
 
-def _write_csv(result, path):
+def _write_csv(result: "Dataset", path: str) -> None:
     along = _curve_dimension(result)
     numbers = [v for v in result.data_vars.values() if v.dtype.kind in "fiub"]
     curves = [result[along]] + [v for v in numbers if v.dims == (along,)]
@@ -342,7 +361,7 @@ def _write_csv(result, path):
         out.writelines(",".join(map(repr, row)) + "\n" for row in rows)
 
 
-def write_whole(path, overwrite, write):
+def write_whole(path: str | Path, overwrite: bool, write: Callable[[str], object]) -> None:
     """Let ``write`` fill a temporary file beside ``path``, then give it its name."""
     path = Path(path)
     if os.path.lexists(path) and not overwrite:  # a dangling link is somebody's, too

@@ -4,7 +4,7 @@ Where dask is installed xarray imports it before it writes anything, which takes
 """
 
 from io import BytesIO
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -38,7 +38,7 @@ def _is_plain(result: "Dataset") -> bool:
     )
 
 
-def _write(file, name: str, variable: "Variable") -> None:
+def _write(file: Any, name: str, variable: "Variable") -> None:
     import h5py
 
     text = variable.dtype.kind == "U"

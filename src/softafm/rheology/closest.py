@@ -22,7 +22,7 @@ how many standard errors of this mean more."""
 
 
 def find_ends(frequency: np.ndarray, storage: np.ndarray, loss: np.ndarray) -> tuple[float, float]:
-    """Return the shortest and the longest relaxation time, s, that moduli can tell of."""
+    """Return the shortest and the longest relaxation time, s, that moduli determine."""
     fastest = min(_FASTEST, _STIFFENED * storage[-1] / loss[-1])
     return fastest / (2 * pi * frequency[-1]), _SLOWEST / (2 * pi * frequency[0])
 
@@ -92,7 +92,7 @@ def refuse_impossible(frequency: np.ndarray, storage: np.ndarray, loss: np.ndarr
 
 
 def _describe_contradiction(frequency: np.ndarray, storage: np.ndarray) -> str:
-    """Tell which law of passive solids is broken."""
+    """Return which law of passive solids is broken."""
     share = storage / np.maximum.accumulate(storage)
     last = int(np.argmin(share))
     if share[last] > 1 - _OFF:

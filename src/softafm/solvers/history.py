@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 
 from softafm.errors import AccuracyWarning
+from softafm.instrument.motion import Motion
 
 _POINTS, _WEIGHTS = np.polynomial.legendre.leggauss(4)
 _MOST_UNEVEN = 4.0
@@ -43,13 +44,15 @@ class History:
     """Instants of elastic jumps, s, shape (jump,)."""
     jump_energy: np.ndarray
     """Energy each jump released, J, shape (jump,)."""
-    motion: Any
+    motion: Motion
     """The motion as it was carried out: a ramp may have been turned by a force."""
     profiles: Profiles | None = None
     diagnostics: dict[str, float] = field(default_factory=dict)
     warnings: tuple[AccuracyWarning, ...] = ()
     """What the solver doubts; it has warned of it, too."""
-    _quadratures: dict = field(default_factory=dict, init=False, repr=False, compare=False)
+    _quadratures: dict[Any, Any] = field(
+        default_factory=dict, init=False, repr=False, compare=False
+    )
 
     def integrate(
         self,
@@ -70,7 +73,7 @@ class History:
             total += float(np.sum(interpolated * weight(at) * lengths))
         return total
 
-    def _quadrature(self, start, stop) -> list[tuple]:
+    def _quadrature(self, start: float, stop: float) -> list[tuple[Any, ...]]:
         """Points and weights of every piece, and the cubics there: kept for the next integral."""
         from softafm.solvers.cubics import cubics
 

@@ -30,14 +30,16 @@ class PeriodicMemory:
         part of the way, and not mixed: far off, a cycle tells little of the periodic memory.
     """
 
-    def __init__(self, period: float, compliances, retardation_times, unit: float):
+    def __init__(
+        self, period: float, compliances: np.ndarray, retardation_times: np.ndarray, unit: float
+    ):
         self._unit, self._pace, self._last = unit, _PACE, np.inf
         self._gaining = -np.expm1(-period / np.asarray(retardation_times))[:, None]
         self._compliances = np.asarray(compliances)[:, None]
         self._trials: list[np.ndarray] = []
         self._misses: list[np.ndarray] = []
 
-    def next_start(self, start, gained) -> tuple[np.ndarray, float]:
+    def next_start(self, start: np.ndarray, gained: np.ndarray) -> tuple[np.ndarray, float]:
         """Return the memory to start the next cycle with, and how far the last start was off, m.
 
         ``start`` is y_m at the start of a cycle, ``gained`` its Δ_m, shape (elements, nodes), in

@@ -17,7 +17,7 @@ import numpy as np
 from softafm.checks.refusals import ConfigError, show, suggest
 from softafm.contact import Contact
 from softafm.errors import AccuracyWarning
-from softafm.experiment.config import build_experiment, build_table
+from softafm.experiment.config import Experiment, build_experiment, build_table
 from softafm.experiment.fields import Keys, replace_value, split_path
 from softafm.modes import MODES, Axes, Mode
 from softafm.results.content import VARIABLES
@@ -103,7 +103,7 @@ class RunExperiment:
         found = replace(experiment, contact=kept).observables()
         return {name: found[name] for name in self.names}
 
-    def experiment(self, values: Mapping[str, Any]):
+    def experiment(self, values: Mapping[str, Any]) -> Experiment:
         """Return the experiment of a run; ConfigError if there is none."""
         document = self.document
         for path, value in values.items():

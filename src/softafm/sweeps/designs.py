@@ -182,7 +182,9 @@ def _refuse_size(runs: int, sizes: list[int], groups: list[tuple[str, ...]]) -> 
     )
 
 
-def _read_group(group: tuple[str, ...], written: Any, field, grid: bool) -> list[tuple[Field, Any]]:
+def _read_group(
+    group: tuple[str, ...], written: Any, field: Callable[[str], Field], grid: bool
+) -> list[tuple[Field, Any]]:
     """Return the fields that vary along one dimension, each with a list of values or a range."""
     if len(group) == 1:
         return [_read_column(group[0], written, field, grid)]
@@ -206,7 +208,9 @@ def _read_group(group: tuple[str, ...], written: Any, field, grid: bool) -> list
     return columns
 
 
-def _read_column(path: str, written: Any, field, grid: bool) -> tuple[Field, Any]:
+def _read_column(
+    path: str, written: Any, field: Callable[[str], Field], grid: bool
+) -> tuple[Field, Any]:
     if not isinstance(path, str):
         raise ConfigError([f"sweep.vary = {show(path)}: must be a field, such as 'sample.E_inf'"])
     try:
@@ -238,7 +242,7 @@ def _read_list(field: Field, written: Any) -> list[Any]:
     return values
 
 
-def _read_range(field: Field, written: Between | Mapping, grid: bool) -> Any:
+def _read_range(field: Field, written: Between | Mapping[str, Any], grid: bool) -> Any:
     """Return a range's values in a grid, or a ``Between`` in SI."""
     path = f"sweep.vary.'{field.path}'"
     points, spacing = None, "linear"
@@ -288,7 +292,13 @@ def _read_range(field: Field, written: Between | Mapping, grid: bool) -> Any:
     return (np.geomspace if spacing == "log" else np.linspace)(start, stop, points)
 
 
-def _draw_sample(kind: str, columns, names: Mapping[str, str], count: int, seed: int) -> Design:
+def _draw_sample(
+    kind: str,
+    columns: Sequence[list[tuple[Field, Any]]],
+    names: Mapping[str, str],
+    count: int,
+    seed: int,
+) -> Design:
     """Draw a sample: a column of numbers from 0 to 1 for each group."""
     shares = _draw_unit_sample(kind, len(columns), count, seed)
     parameters = []

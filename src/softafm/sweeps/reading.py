@@ -1,13 +1,13 @@
 """What a sweep is to do: the table ``[sweep]`` of a campaign file, or arguments in its place."""
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, fields
 from functools import partial
 from pathlib import Path
 from typing import Any
 
 from softafm.checks.refusals import ConfigError, join_with_or, show, suggest
-from softafm.experiment.fields import find_field, make_plain_field
+from softafm.experiment.fields import Field, find_field, make_plain_field
 from softafm.experiment.takers import refuse_unless
 from softafm.modes import MODES
 from softafm.sweeps.campaign import (
@@ -58,7 +58,7 @@ def read_table(written: Any) -> Table:
         if key in written and not isinstance(written[key], kind):
             raise ConfigError([f"sweep.{key} = {show(written[key])}: must be {valid}"])
     values = {key: value for key, value in written.items() if key != "together"}
-    vary = dict(_flatten(written.get("vary", {})))
+    vary: dict[Any, Any] = dict(_flatten(written.get("vary", {})))
     for index, group in enumerate(written.get("together", [])):
         if not isinstance(group, Mapping) or not group:
             raise ConfigError(
@@ -71,7 +71,7 @@ def read_table(written: Any) -> Table:
     return Table(**values)
 
 
-def _flatten(tables: Mapping[str, Any], path: str = ""):
+def _flatten(tables: Mapping[str, Any], path: str = "") -> Iterator[tuple[str, Any]]:
     """Yield paths and values, of tables within tables, too: TOML makes them of bare keys."""
     for key, value in tables.items():
         name = f"{path}.{key}" if path else key
@@ -117,5 +117,7 @@ def make_campaign(
     return plan_experiments(what, folder, design(field, taken=taken), table.observables)
 
 
-def _find_field(document, varied, folder, bare, path):
+def _find_field(
+    document: Mapping[str, Any], varied: list[str], folder: Path, bare: bool, path: str
+) -> Field:
     return find_field(document, path, varied, folder, bare)

@@ -315,7 +315,7 @@ def _is_index(text: str) -> bool:
     return text.isascii() and text.isdigit() and len(text) < 12
 
 
-def _try_lock(lock) -> bool:
+def _try_lock(lock: Any) -> bool:
     """Take a lock that the system gives up with the process, where it has such; else say yes."""
     try:
         import fcntl
@@ -398,7 +398,9 @@ def _fill(path: Path, campaign: Campaign, block: tuple[int, ...]) -> None:
     (path / ".zmetadata").write_text(json.dumps(consolidated), encoding="utf-8")
 
 
-def _write_observable(observable: Observable, dimensions, shape, block) -> dict[str, Any]:
+def _write_observable(
+    observable: Observable, dimensions: Sequence[str], shape: Sequence[int], block: Sequence[int]
+) -> dict[str, Any]:
     attributes = {"units": observable.unit, "long_name": observable.long_name}
     return _describe_array(
         observable.name,
@@ -411,7 +413,12 @@ def _write_observable(observable: Observable, dimensions, shape, block) -> dict[
 
 
 def _describe_array(
-    name, dimensions, shape, chunks, dtype: str, attributes: Mapping[str, Any]
+    name: str,
+    dimensions: Sequence[str],
+    shape: Sequence[int],
+    chunks: Sequence[int],
+    dtype: str,
+    attributes: Mapping[str, Any],
 ) -> dict[str, Any]:
     """Return the metadata of an array, with its attributes."""
     floats = dtype == "<f8"
@@ -441,7 +448,7 @@ def _hash_coordinates(campaign: Campaign) -> dict[str, str]:
 
 
 def describe_difference(store: Store, campaign: Campaign) -> str | None:
-    """Tell in what a campaign differs from the one that began a store; None if in nothing."""
+    """Return in what a campaign differs from the one that began a store; None if in nothing."""
     begun = json.loads(store.attributes["campaign"])
     ours = json.loads(json.dumps(campaign.identity))
     found = _find_difference(begun, ours, "")

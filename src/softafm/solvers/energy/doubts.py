@@ -1,12 +1,16 @@
 """What a run of the energy solver doubts about its own result, and advises."""
 
 from math import sqrt
+from typing import TYPE_CHECKING, Any
 
 from softafm.errors import AccuracyWarning
 from softafm.solvers.energy.tuning import COARSER_THAN_NEEDED, SHARPEST, SLACKEST
 
+if TYPE_CHECKING:
+    from softafm.solvers.energy.run import Run
 
-def list_doubts(run) -> tuple[AccuracyWarning, ...]:
+
+def list_doubts(run: "Run") -> tuple[AccuracyWarning, ...]:
     """Return the warnings that a finished run deserves."""
     return (
         *_doubt_steadiness(run),
@@ -17,13 +21,13 @@ def list_doubts(run) -> tuple[AccuracyWarning, ...]:
     )
 
 
-def suggest_longer_range(contact) -> str:
+def suggest_longer_range(contact: Any) -> str:
     """Return advice, for the end of a line, where the contact is too soft for its own range."""
     tabor = contact.tabor_softened
     return f"; its Tabor number is {tabor:.3g}: try regularise=8" if tabor > 30 else ""
 
 
-def _doubt_steadiness(run) -> tuple[AccuracyWarning, ...]:
+def _doubt_steadiness(run: "Run") -> tuple[AccuracyWarning, ...]:
     if run.unsteady <= run.steadiness:
         return ()
     text = (
@@ -34,7 +38,7 @@ def _doubt_steadiness(run) -> tuple[AccuracyWarning, ...]:
     return (AccuracyWarning(text, run.unsteady),)
 
 
-def _doubt_coarseness(run) -> tuple[AccuracyWarning, ...]:
+def _doubt_coarseness(run: "Run") -> tuple[AccuracyWarning, ...]:
     coarseness, edge = run.coarsest
     if coarseness <= COARSER_THAN_NEEDED * run.target:
         return ()
@@ -58,7 +62,7 @@ def _doubt_coarseness(run) -> tuple[AccuracyWarning, ...]:
     return (AccuracyWarning(text, coarseness / run.target),)
 
 
-def _doubt_slackness(run) -> tuple[AccuracyWarning, ...]:
+def _doubt_slackness(run: "Run") -> tuple[AccuracyWarning, ...]:
     tabor = run.contact.tabor_instantaneous
     if not run.contact.adhesive or tabor <= SLACKEST or len(run.falls) < 2:
         return ()
@@ -71,7 +75,7 @@ def _doubt_slackness(run) -> tuple[AccuracyWarning, ...]:
     return (AccuracyWarning(text, tabor),)
 
 
-def _doubt_sharpness(run) -> tuple[AccuracyWarning, ...]:
+def _doubt_sharpness(run: "Run") -> tuple[AccuracyWarning, ...]:
     law = run.contact.surface
     if not run.contact.adhesive or law.sharpness <= SHARPEST:
         return ()
@@ -83,7 +87,7 @@ def _doubt_sharpness(run) -> tuple[AccuracyWarning, ...]:
     return (AccuracyWarning(text, law.sharpness),)
 
 
-def _doubt_width(run) -> tuple[AccuracyWarning, ...]:
+def _doubt_width(run: "Run") -> tuple[AccuracyWarning, ...]:
     body = run.contact.body
     widest = float(run.records["frame"][: run.count].max(initial=0.0))
     if widest <= body.widest:

@@ -1,9 +1,11 @@
 """A fall of the energy solver: from a shape that is no longer stable to the next one that is."""
 
+from typing import TYPE_CHECKING
+
 import numpy as np
 
 from softafm.instrument.compiled_motions import still
-from softafm.solvers.energy.layout import FINISHED, FULL, LOAD, REMESH
+from softafm.solvers.energy.layout import FINISHED, FULL, LOAD, REMESH, Controls
 from softafm.solvers.energy.tuning import (
     END_OF_FALL,
     ERROR_IN_A_FALL,
@@ -13,8 +15,12 @@ from softafm.solvers.energy.tuning import (
     STIFF_SHARE,
 )
 
+if TYPE_CHECKING:
+    from softafm.solvers.energy.run import Run
+    from softafm.solvers.energy.surface import Surface
 
-def creep_down(run, time: float, duration: float) -> None:
+
+def creep_down(run: "Run", time: float, duration: float) -> None:
     """Follow a fall, ``duration`` long and under the tip height of ``time``, as a fast creep.
 
     The instantaneous compliance is given a retardation time of its own, far below the shortest
@@ -56,7 +62,7 @@ def _split_compliance(instantaneous: float, tabor: float | None) -> tuple[float,
     return stiff, instantaneous - stiff
 
 
-def _loosen(controls, creep_time: float, duration: float, tries: float):
+def _loosen(controls: Controls, creep_time: float, duration: float, tries: float) -> Controls:
     """Return controls for a fall: only its end counts."""
     return controls._replace(
         shortest_step=1e-9 * creep_time, longest_step=duration, top_speed=1e-300,
@@ -65,7 +71,7 @@ def _loosen(controls, creep_time: float, duration: float, tries: float):
     )  # fmt: skip
 
 
-def _reach_end(run, creep_time: float, duration: float) -> bool:
+def _reach_end(run: "Run", creep_time: float, duration: float) -> bool:
     """Step through the fictitious time from 0 to ``duration``; whether its end was reached."""
     surface, clock = run.surface, run.surface.clock
     clock["time"], clock["step"], clock["history"] = 0.0, 1e-3 * creep_time, 1
@@ -77,7 +83,7 @@ def _reach_end(run, creep_time: float, duration: float) -> bool:
     return outcome == FINISHED
 
 
-def _is_done(surface, delayed: float) -> bool:
+def _is_done(surface: "Surface", delayed: float) -> bool:
     """Whether surface and lever have come to rest."""
     clock = surface.clock
     behind = delayed * np.abs(surface.fields[LOAD] - surface.fields[-1]).max()

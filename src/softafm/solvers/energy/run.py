@@ -2,11 +2,13 @@
 
 from collections.abc import Iterator
 from itertools import pairwise
+from typing import Any, cast
 
 import numpy as np
 
 from softafm.errors import DivergedError
-from softafm.instrument.motion import bound_speed, count_periods, find_setpoint
+from softafm.instrument.lever import Lever
+from softafm.instrument.motion import Motion, Turning, bound_speed, count_periods, find_setpoint
 from softafm.solvers.energy.doubts import list_doubts, suggest_longer_range
 from softafm.solvers.energy.fall import creep_down
 from softafm.solvers.energy.layout import (
@@ -51,7 +53,15 @@ _CHUNK = 256
 class Run:
     """Carries a surface through a motion and keeps what happens."""
 
-    def __init__(self, solver, contact, motion, lever, tolerance: float, keep_shapes: bool):
+    def __init__(
+        self,
+        solver: Any,
+        contact: Any,
+        motion: Motion,
+        lever: Lever,
+        tolerance: float,
+        keep_shapes: bool,
+    ):
         self.solver, self.contact = solver, contact
         self._follow(motion)
         self.strictness = tolerance / 1e-2
@@ -90,9 +100,10 @@ class Run:
         """Run, yielding the fraction of the motion done at every return of the compiled loop."""
         surface = self.surface
         self._settle()
-        if surface.clock["force"] >= self._trigger(-np.inf):
+        trigger = self._trigger(-np.inf)
+        if surface.clock["force"] >= trigger:
             raise ValueError(
-                f"setpoint_force = {self.motion.setpoint_force:g} N: must be above the force at "
+                f"setpoint_force = {trigger:g} N: must be above the force at "
                 f"the start, {surface.clock['force']:.3g} N"
             )
         first = surface.time
@@ -152,42 +163,42 @@ class Run:
                 return
             surface.remember(memory)
 
-    def _follow(self, motion):
+    def _follow(self, motion: Motion) -> None:
         """Take a motion for what is to be done, and the instants that a step of it has to meet."""
         self.motion, self.breaks = motion, motion.breaks
         self.stops = np.sort(np.concatenate([motion.breaks, motion.landmarks]))
 
-    def _next_stop(self):
+    def _next_stop(self) -> float | None:
         """Return the next instant that a step has to meet, s, or None at the end."""
         ahead = np.searchsorted(self.stops, self.surface.time, side="right")
         return float(self.stops[ahead]) if ahead < self.stops.size else None
 
-    def _trigger(self, stop) -> float:
+    def _trigger(self, stop: float) -> float:
         """Return the force that turns the ramp before ``stop``, N."""
         force = find_setpoint(self.motion)
         return np.inf if force is None or stop > self.breaks[1] else force
 
-    def _top_speed(self, stop) -> float:
+    def _top_speed(self, stop: float) -> float:
         """Return how fast the motion gets until ``stop``, m/s."""
         return bound_speed(self.motion, self.surface.time, stop)
 
-    def _turn(self):
+    def _turn(self) -> None:
         """Let the ramp turn now, its force having been reached."""
         surface = self.surface
-        self._follow(self.motion.turned_at(surface.time))
+        self._follow(cast(Turning, self.motion).turned_at(surface.time))
         height, parameters = self.motion.compiled_height
         surface.functions = surface.functions._replace(height=height)
         surface.parameters = surface.parameters._replace(height=parameters)
         surface.clock["time"] = self.breaks[1]
         self.records[self.count - 1]["time"] = surface.time
 
-    def _begin_piece(self, stop):
+    def _begin_piece(self, stop: float) -> None:
         """Forget the past shapes: beyond a break of the motion they do not extrapolate."""
         clock = self.surface.clock
         clock["history"] = 1
         clock["step"] = AFTER_A_BREAK * clock["taken"] or FIRST_STEP * (stop - self.surface.time)
 
-    def _advance(self, stop):
+    def _advance(self, stop: float) -> tuple[int, np.ndarray, np.ndarray]:
         """Call the compiled loop once; return its outcome, records and shapes."""
         surface = self.surface
         finest, coarsest = surface.coarseness_allowed
@@ -212,13 +223,13 @@ class Run:
             self.records = longer
         return self.records[self.count : self.count + _CHUNK]
 
-    def _settle(self):
+    def _settle(self) -> None:
         """Equilibrate at frozen memory, and keep a record of it."""
         records = self._free_records()[:1]
         records[0] = self.surface.settle()
         self._keep(records, self.surface.fields[DEFORMATION][None])
 
-    def _fall(self, stop):
+    def _fall(self, stop: float) -> None:
         """Pass a short step where no stable shape is near, and note a jump if it is one."""
         surface, clock = self.surface, self.surface.clock
         start, gap, edge, force = surface.time, clock["axis_gap"], clock["edge"], clock["force"]
@@ -244,7 +255,7 @@ class Run:
             # No fall but a slip: the edge is caught by nodes too far apart for a contact so slack.
             surface.target = max(surface.target / 2, FINEST_TARGET)
 
-    def _keep(self, records, shapes):
+    def _keep(self, records: np.ndarray, shapes: np.ndarray) -> None:
         """Keep the records just filled, shapes, and the worst coarseness of the finest mesh."""
         surface = self.surface
         self.count += records.size

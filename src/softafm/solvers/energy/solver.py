@@ -8,7 +8,7 @@ from softafm.checks.callers import warn_caller
 from softafm.checks.validate import check_finite, check_positive
 from softafm.compiled.announce import announce_compilation
 from softafm.instrument.lever import Lever, check_lever, make_lever
-from softafm.instrument.motion import count_periods, is_steady
+from softafm.instrument.motion import Motion, count_periods, is_steady
 from softafm.instrument.motions import find_lowest_height
 from softafm.progress import Progress
 from softafm.solvers.history import History
@@ -53,7 +53,7 @@ class Energy:
     def solve(
         self,
         contact: Any,
-        motion: Any,
+        motion: Motion,
         *,
         stiffness: float | None = None,
         lever: Lever | None = None,
@@ -106,13 +106,13 @@ class Energy:
             warn_caller(warning)
         return history
 
-    def expected_seconds(self, contact: Any, motion: Any) -> float:
+    def expected_seconds(self, contact: Any, motion: Motion) -> float:
         """Order of magnitude of a run at the default tolerance, s on one core, as measured."""
         cycles = count_periods(motion)
         return 4e-3 * cycles + 2e-5 * count_cohesive_lengths(contact, motion)
 
 
-def count_cohesive_lengths(contact, motion) -> float:
+def count_cohesive_lengths(contact: Any, motion: Motion) -> float:
     """Return how many cohesive lengths the contact edge crosses at most, in and out each cycle.
 
     None without adhesion. The modulus is what the motion leaves of it, the softened one at

@@ -1,12 +1,15 @@
 """The surface of the energy solver between calls of its compiled loop: mesh, fields, clock."""
 
 from math import ceil, inf, log2, sqrt
+from typing import Any
 
 import numpy as np
 
 from softafm.bodies.mesh import UnitMesh, unit_mesh
 from softafm.bodies.stiffness import STEP, Stiffness
 from softafm.errors import DivergedError
+from softafm.instrument.lever import Lever
+from softafm.instrument.motion import Motion
 from softafm.solvers.energy.descent import descend
 from softafm.solvers.energy.equilibrium import raise_tip, tip_force
 from softafm.solvers.energy.frame import choose_frame, find_radius, transfer
@@ -49,7 +52,9 @@ class Surface:
     spacing aimed at, as a part of the width of the cohesive zone.
     """
 
-    def __init__(self, contact, motion, lever, strictness: float, finest_spacing: float):
+    def __init__(
+        self, contact: Any, motion: Motion, lever: Lever, strictness: float, finest_spacing: float
+    ):
         self.contact = contact
         breaks = motion.breaks
         compliance = contact.body.compliance.chain(breaks[-1] - breaks[0])
@@ -137,7 +142,7 @@ class Surface:
         """Whether the lever follows a force at once."""
         return self.lever.stiffness < inf
 
-    def mount(self, lever, state) -> None:
+    def mount(self, lever: Lever, state: np.ndarray) -> None:
         """Let another lever carry the tip, one that remembers ``state``, bent as it is now."""
         respond, accept_force, parameters = lever.compiled_response
         self.functions = self.functions._replace(respond=respond, accept_force=accept_force)
@@ -177,8 +182,7 @@ class Surface:
         """Go back to ``time``; return the memory gained since, (elements, n) in Pa·m.
 
         It is returned on a mesh of its own, always the same, that of the finest level so far. The
-        surface keeps its mesh if it is in contact. Whoever goes on has to ``remember``, then to
-        ``settle``.
+        surface keeps its mesh if it is in contact. To go on, ``remember`` first, then ``settle``.
         """
         clock = self.clock
         if self.archive[1] == 0:
@@ -195,7 +199,7 @@ class Surface:
         clock["time"] = time
         return gained
 
-    def remember(self, memory) -> None:
+    def remember(self, memory: np.ndarray) -> None:
         """Take ``memory``, as ``rewind`` returned it, for that of all that was before now."""
         mesh, frame = self.archive
         self.background = Background(
@@ -212,7 +216,7 @@ class Surface:
         )  # fmt: skip
         return memory + self.fields[MEMORY:]
 
-    def _carry(self, fields, mesh: UnitMesh, stretch: float) -> np.ndarray:
+    def _carry(self, fields: np.ndarray, mesh: UnitMesh, stretch: float) -> np.ndarray:
         """Return fields (m, n) on another mesh, in a frame ``stretch`` times larger."""
         old, n = self.mesh, mesh.nodes.size
         result = np.empty((len(fields), n))
@@ -277,7 +281,7 @@ class Surface:
         self.tabulate(float(frame))
         elastic = np.pi * frame * self.parameters.compliance[0] * (load @ mesh.stiffness @ load)
 
-        def density(radius, deformation):
+        def density(radius: np.ndarray, deformation: Any) -> np.ndarray:
             gap = h0 + self.contact.tip.profile(radius) - deformation - self.parameters.law[ORIGIN]
             found = np.empty(gap.size)
             self.functions.potential(gap, self.parameters.law, found, gap.size)
@@ -291,7 +295,7 @@ class Surface:
         return float(elastic + bending + 2 * np.pi * (near + beyond))
 
 
-def find_gap_origin(contact) -> float:
+def find_gap_origin(contact: Any) -> float:
     """Return where the solver counts gaps from, m, so that pressures change alike in all of them.
 
     Steps, errors and the mesh are judged relative to the gap. That suits a Lennard-Jones law, whose

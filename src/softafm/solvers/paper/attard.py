@@ -10,6 +10,7 @@ from softafm.bodies.radial_functions import grid
 from softafm.bodies.rings import ring_influence
 from softafm.checks.validate import check_choice, check_positive, check_whole
 from softafm.compiled.announce import announce_compilation
+from softafm.instrument.motion import Motion
 from softafm.progress import Progress
 from softafm.solvers.history import History
 from softafm.solvers.paper.stepping import ForwardEuler, Stepper, check_stepper
@@ -81,7 +82,7 @@ class Attard:
     def solve(
         self,
         contact: Any,
-        motion: Any,
+        motion: Motion,
         *,
         stiffness: float | None = None,
         tolerance: float = 1e-2,
@@ -152,7 +153,7 @@ class Attard:
             progress=progress,
         )  # fmt: skip
 
-    def expected_seconds(self, contact: Any, motion: Any) -> float:
+    def expected_seconds(self, contact: Any, motion: Motion) -> float:
         """Order of magnitude of a run, s on one core, as measured.
 
         How many iterations ``method="iterative"`` takes shows only in the run: 50 a rate are

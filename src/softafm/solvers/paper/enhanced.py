@@ -1,7 +1,7 @@
 """The enhanced Attard's model: the surface as a sum of radial functions."""
 
 from dataclasses import dataclass, field
-from typing import Any, ClassVar, Literal
+from typing import TYPE_CHECKING, Any, ClassVar, Literal
 
 import numpy as np
 
@@ -10,9 +10,13 @@ from softafm.bodies.half_space import refuse_other_bodies
 from softafm.bodies.rings import ring_influence
 from softafm.checks.validate import check_choice, check_positive, check_whole
 from softafm.compiled.announce import announce_compilation
+from softafm.instrument.motion import Motion
 from softafm.progress import Progress
 from softafm.solvers.history import History
 from softafm.solvers.paper.stepping import AdamsBashforth, Stepper, check_stepper
+
+if TYPE_CHECKING:
+    from softafm.solvers.paper.run import Discretisation
 
 # What is expanded: u = carried·(h0 + g) + sign·Σ a_i f_i.
 _EXPANSIONS = {"deformation": (0.0, 1.0), "gap": (1.0, -1.0), "bounded-gap": (0.0, -1.0)}
@@ -91,7 +95,7 @@ class EnhancedAttard:
     def solve(
         self,
         contact: Any,
-        motion: Any,
+        motion: Motion,
         *,
         stiffness: float | None = None,
         tolerance: float = 1e-2,
@@ -133,14 +137,14 @@ class EnhancedAttard:
             profiles=profiles, progress=progress,
         )  # fmt: skip
 
-    def expected_seconds(self, contact: Any, motion: Any) -> float:
+    def expected_seconds(self, contact: Any, motion: Motion) -> float:
         """Order of magnitude of a run, s on one core, as measured."""
         rate = 2e-6 + 3e-8 * self.nodes + self.functions**2 * (8e-9 + 4e-11 * self.nodes)
         if not self.orthogonal:
             rate += 6e-11 * self.functions * self.nodes**2
         return self.steps * self.stepper.rates_per_step * rate
 
-    def _discretise(self, tip, domain: float, height: float):
+    def _discretise(self, tip: Any, domain: float, height: float) -> "Discretisation":
         from softafm.solvers.paper import kernel as k
         from softafm.solvers.paper.run import Discretisation, list_beyond_domain
 

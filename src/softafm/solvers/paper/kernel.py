@@ -410,6 +410,72 @@ def filter_pressure(step, retardation, before, pressure, filtered):
 @_compile_for(
     int64(
         SETUP, pointer_to(PRESSURE), MATERIAL, CONTROLS,
+        _CONST, _CONST, int64, _M, _M, WORK, int64[::1],
+    ),
+)  # fmt: skip
+def take_runge_kutta(
+    setup, law, material, controls, heights, speeds, instant, state, now, work, counters
+):
+    """Advance a state, whose rates are ``now``, by a step of the classical Runge-Kutta method."""
+    rows, width = state.shape
+    lever = controls.stiffness > 0.0
+    tip, stages = work.tip, work.stages
+    stages[0] = now
+    start, climb = tip[0], tip[1]
+    for stage in range(1, 4):
+        part = 0.5 if stage < 3 else 1.0
+        for row in range(rows):
+            for i in range(width):
+                work.trial[row, i] = (
+                    state[row, i] + part * controls.step * stages[stage - 1, row, i]
+                )
+        at = 2 * instant + (1 if stage < 3 else 2)
+        height = start + part * controls.step * tip[1] if lever else heights[at]
+        if not observe(setup, law, material, controls, height, work.trial, work):
+            return BLOWN_UP
+        stages[stage] = stages[stage - 1]
+        if lever:
+            force = tip_force(setup, law, material, work)
+            outcome = rates_on_lever(
+                setup, material, controls, height, force, heights[at], speeds[at],
+                work.trial, stages[stage], work, counters,
+            )  # fmt: skip
+        else:
+            outcome = rates(
+                setup, material, controls, height, speeds[at],
+                work.trial, stages[stage], work, counters,
+            )  # fmt: skip
+        if outcome != FINISHED:
+            return outcome
+        climb += 2.0 * tip[1] if stage < 3 else tip[1]
+    tip[0] = start + controls.step / 6.0 * climb
+    for row in range(rows):
+        for i in range(width):
+            state[row, i] += (controls.step / 6.0) * (
+                stages[0, row, i]
+                + 2.0 * (stages[1, row, i] + stages[2, row, i])
+                + stages[3, row, i]
+            )
+    return FINISHED
+
+
+@_compile_for((CONTROLS, int64, _M, _CUBE, WORK))
+def extrapolate(controls, instant, state, past, work):
+    """Advance a state by a step of the Adams-Bashforth method, from its rates in the past."""
+    ring = past.shape[0]
+    rows, width = state.shape
+    for back in range(controls.weights.size):
+        weight = controls.step * controls.weights[back]
+        rate = past[(instant - back) % ring]
+        work.tip[0] += weight * work.past_tip[(instant - back) % ring]
+        for row in range(rows):
+            for i in range(width):
+                state[row, i] += weight * rate[row, i]
+
+
+@_compile_for(
+    int64(
+        SETUP, pointer_to(PRESSURE), MATERIAL, CONTROLS,
         _CONST, _CONST, int64, _M, _CUBE, WORK, _M, _M, int64[::1],
     ),
 )  # fmt: skip
@@ -423,9 +489,7 @@ def march(
     midpoints. ``state`` (rows, e) is advanced in place; ``past`` (rates, rows, e) is a ring of past
     rates. Row i of ``records`` and, if there is one, of ``shapes`` takes instant i of the piece.
     """
-    order = controls.weights.size
     ring = past.shape[0]
-    rows, width = state.shape
     instants = heights.size // 2
     lever = controls.stiffness > 0.0
     tip, past_tip = work.tip, work.past_tip
@@ -463,50 +527,12 @@ def march(
             break
         work.step_before[0] = controls.step
 
-        if controls.always_runge_kutta or counters[PAST] < order:
-            stages = work.stages
-            stages[0] = now
-            start, climb = tip[0], tip[1]
-            for stage in range(1, 4):
-                part = 0.5 if stage < 3 else 1.0
-                for row in range(rows):
-                    for i in range(width):
-                        work.trial[row, i] = (
-                            state[row, i] + part * controls.step * stages[stage - 1, row, i]
-                        )
-                at = 2 * instant + (1 if stage < 3 else 2)
-                height = start + part * controls.step * tip[1] if lever else heights[at]
-                if not observe(setup, law, material, controls, height, work.trial, work):
-                    return BLOWN_UP
-                stages[stage] = stages[stage - 1]
-                if lever:
-                    force = tip_force(setup, law, material, work)
-                    outcome = rates_on_lever(
-                        setup, material, controls, height, force, heights[at], speeds[at],
-                        work.trial, stages[stage], work, counters,
-                    )  # fmt: skip
-                else:
-                    outcome = rates(
-                        setup, material, controls, height, speeds[at],
-                        work.trial, stages[stage], work, counters,
-                    )  # fmt: skip
-                if outcome != FINISHED:
-                    return outcome
-                climb += 2.0 * tip[1] if stage < 3 else tip[1]
-            tip[0] = start + controls.step / 6.0 * climb
-            for row in range(rows):
-                for i in range(width):
-                    state[row, i] += (controls.step / 6.0) * (
-                        stages[0, row, i]
-                        + 2.0 * (stages[1, row, i] + stages[2, row, i])
-                        + stages[3, row, i]
-                    )
+        if controls.always_runge_kutta or counters[PAST] < controls.weights.size:
+            outcome = take_runge_kutta(
+                setup, law, material, controls, heights, speeds, instant, state, now, work, counters
+            )
+            if outcome != FINISHED:
+                return outcome
         else:
-            for back in range(order):
-                weight = controls.step * controls.weights[back]
-                rate = past[(instant - back) % ring]
-                tip[0] += weight * past_tip[(instant - back) % ring]
-                for row in range(rows):
-                    for i in range(width):
-                        state[row, i] += weight * rate[row, i]
+            extrapolate(controls, instant, state, past, work)
     return FINISHED

@@ -1,16 +1,16 @@
 """One run of a fixed-step solver: a discretised surface, pieces of a motion, a history."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from itertools import pairwise
 from time import perf_counter
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, NoReturn
 
 import numpy as np
 
 from softafm.bodies.mesh import beyond
 from softafm.checks.callers import warn_caller
 from softafm.errors import AccuracyWarning, DivergedError
-from softafm.instrument.motion import count_periods, is_steady
+from softafm.instrument.motion import Motion, count_periods, is_steady
 from softafm.instrument.motions import find_lowest_height
 from softafm.solvers.history import History, Profiles
 from softafm.solvers.paper import kernel as k
@@ -44,7 +44,7 @@ class _Piece(NamedTuple):
     speeds: np.ndarray
 
 
-def choose_domain(contact, motion) -> float:
+def choose_domain(contact: Any, motion: Motion) -> float:
     """Radius of the computational domain, m: the largest contact expected and what acts around it.
 
     The contact is that of the relaxed JKR theory at the lowest tip height. Around it the domain
@@ -55,7 +55,7 @@ def choose_domain(contact, motion) -> float:
     return float(tip.radius_at(float(tip.profile(contact.contact_radius(lowest))) + rise))
 
 
-def list_beyond_domain(tip, domain: float, last: float) -> tuple[np.ndarray, np.ndarray]:
+def list_beyond_domain(tip: Any, domain: float, last: float) -> tuple[np.ndarray, np.ndarray]:
     """Heights of the tip above radius ``last``, and 2πr dr, at radii beyond the domain."""
     radius, masses = beyond(domain)
     return tip.profile(radius) - tip.profile(last), 2 * np.pi * masses
@@ -63,9 +63,9 @@ def list_beyond_domain(tip, domain: float, last: float) -> tuple[np.ndarray, np.
 
 def march(
     discretisation: Discretisation,
-    contact,
-    motion,
-    solver,
+    contact: Any,
+    motion: Motion,
+    solver: Any,
     *,
     stiffness: float | None = None,
     tolerance: float = 1e-2,
@@ -105,7 +105,16 @@ def march(
 class _Run:
     """Carries a discretised surface through a motion and keeps what happens."""
 
-    def __init__(self, discretisation, contact, motion, solver, stiffness, iteration, keep_shapes):
+    def __init__(
+        self,
+        discretisation: Discretisation,
+        contact: Any,
+        motion: Motion,
+        solver: Any,
+        stiffness: float,
+        iteration: Iteration,
+        keep_shapes: bool,
+    ):
         self.setup, self.solver, self.motion = discretisation.setup, solver, motion
         self.stiffness = stiffness
         self.law, _, law_parameters = contact.surface.compiled_pressure
@@ -138,7 +147,7 @@ class _Run:
         self.done = 0
         self.cycle, self.unsteady = 1, 0.0
 
-    def cycles(self, tolerance: float):
+    def cycles(self, tolerance: float) -> Iterator[float]:
         """Repeat the motion until the surface ends it as it began it; only the last is kept."""
         period = self.motion.breaks[-1] - self.motion.breaks[0]
         slowest = self.material.retardation.max(initial=0.0)
@@ -155,7 +164,7 @@ class _Run:
             if self.unsteady <= tolerance:
                 return
 
-    def steps(self):
+    def steps(self) -> Iterator[float]:
         """Run, yielding the fraction of the motion done after every few hundred steps."""
         last_step = self.records.shape[0] - 1
         for piece in self.pieces:
@@ -189,7 +198,7 @@ class _Run:
             stiffness=self.stiffness,
         )
 
-    def _give_up(self, outcome, piece):
+    def _give_up(self, outcome: int, piece: _Piece) -> NoReturn:
         instant = int(self.counters[k.INSTANT])
         where = (
             f"t = {piece.time[instant]:.4g} s (step {self.done} of {self.records.shape[0] - 1}, "
@@ -242,7 +251,7 @@ class _Run:
             warnings=tuple(self._warnings(records)),
         )
 
-    def _warnings(self, records):
+    def _warnings(self, records: np.ndarray) -> Iterator[AccuracyWarning]:
         beyond = int(self.counters[k.BEYOND_FOLD])
         if beyond:
             yield AccuracyWarning(
@@ -266,7 +275,7 @@ class _Run:
             )
 
 
-def _find_largest_pressure(contact, domain: float, unknowns: int) -> float:
+def _find_largest_pressure(contact: Any, domain: float, unknowns: int) -> float:
     """Return a pressure that no contact within the domain reaches, Pa.
 
     Twice the peak of a Hertz contact that fills the domain at the instantaneous modulus and the
@@ -279,7 +288,7 @@ def _find_largest_pressure(contact, domain: float, unknowns: int) -> float:
     return share * float(hertz + contact.surface.largest_tension)
 
 
-def _divide(motion, steps: int):
+def _divide(motion: Motion, steps: int) -> Iterator[_Piece]:
     """Divide ``steps`` among the smooth pieces of a motion by their duration."""
     breaks = motion.breaks
     shares = np.round(steps * (breaks - breaks[0]) / (breaks[-1] - breaks[0])).astype(int)

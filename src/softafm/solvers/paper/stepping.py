@@ -1,7 +1,7 @@
 """Time steppers of the fixed-step solvers."""
 
 from dataclasses import dataclass
-from typing import ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
 
@@ -70,7 +70,7 @@ class RungeKutta4:
 Stepper = AdamsBashforth | ForwardEuler | RungeKutta4
 
 
-def check_stepper(value) -> Stepper:
+def check_stepper(value: Any) -> Stepper:
     """Return ``value`` if it is a stepper, else raise ValueError."""
     if not isinstance(value, Stepper):
         raise ValueError(
