@@ -62,9 +62,10 @@ def measure_apart(name: str, factor: float, shared: str) -> dict:
 
 def is_compiled(name: str) -> bool:
     """Whether a constant stands in compiled loops, so that they have to be compiled anew."""
-    from softafm.solvers.energy import equilibrium, frame, memory, step
+    from softafm.solvers.energy import descent, equilibrium, frame, memory, proposal, step
 
-    return any(hasattr(room, name) for room in (equilibrium, frame, memory, step))
+    rooms = descent, equilibrium, frame, memory, proposal, step
+    return any(hasattr(room, name) for room in rooms)
 
 
 def main():
