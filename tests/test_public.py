@@ -300,3 +300,16 @@ def test_solvers_and_motions_of_ones_own_fit_the_types():
 
 def test_the_package_says_that_it_is_typed():
     assert (Path(sa.__file__).parent / "py.typed").is_file()
+
+
+def test_one_override_without_a_list_is_refused(gentle):
+    with pytest.raises(ValueError, match=r"must be a list of such texts, \['sample.E0=3GPa'\]"):
+        sa.run(gentle, "sample.E0=3GPa")
+
+
+def test_a_contact_alone_is_no_experiment():
+    contact = sa.Contact(
+        sa.Paraboloid(10e-9), sa.Elastic(1e9, 0.3), sa.LennardJones(1e-19, 0.25e-9)
+    )
+    with pytest.raises(ValueError, match=r"must say how the tip moves, .* contact\.tabor_relaxed"):
+        sa.regime(contact)

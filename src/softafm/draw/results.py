@@ -7,7 +7,6 @@ from matplotlib.figure import Figure
 from numpy.typing import ArrayLike
 
 from softafm.checks.kinds import check_list
-from softafm.checks.refusals import join_with_or
 from softafm.draw.approach import draw_approach_curve
 from softafm.draw.panels import draw_panels
 from softafm.draw.reference import NAME as REFERENCE
@@ -68,7 +67,7 @@ def _plot(runs: list[xr.Dataset], names: list[str]) -> Figure:
     known = [*MODES, *MAPS]
     if len(modes) > 1 or modes[0] not in known:
         raise ValueError(
-            f"mode = {', '.join(modes)}: must be {join_with_or(known)}, the same for all"
+            f"mode = {', '.join(modes)}: must be the same for all, one of {', '.join(known)}"
         )
     if modes[0] in MAPS:
         return _draw_maps(runs, names)

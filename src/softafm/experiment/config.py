@@ -132,8 +132,7 @@ def load_experiment(path: str | Path, overrides: Sequence[str] = ()) -> Experime
     """
     path = Path(path)
     document = load_document(path)
-    for override in overrides:
-        set_value(document, override)
+    set_values(document, overrides)
     return build_experiment(document, path.parent)
 
 
@@ -205,6 +204,22 @@ def parse_document(text: str, name: str) -> dict[str, Any]:
         return parse(text)
     except ValueError as error:
         raise ConfigError([f"{name}: {error}"]) from None
+
+
+def set_values(document: dict[str, Any], overrides: Sequence[str]) -> None:
+    """Set values of a document, in place, by a list of what ``set_value`` takes.
+
+    Raises
+    ------
+    ConfigError
+        As ``set_value``, and for one text that is not in a list.
+    """
+    if isinstance(overrides, str):
+        raise ConfigError(
+            [f"overrides = {show(overrides)}: must be a list of such texts, [{overrides!r}]"]
+        )
+    for override in overrides:
+        set_value(document, override)
 
 
 def set_value(document: dict[str, Any], override: str) -> None:

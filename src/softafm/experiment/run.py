@@ -6,7 +6,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from softafm.checks.kinds import refuse_other
-from softafm.experiment.config import Experiment, build_experiment, load_experiment, set_value
+from softafm.contact import Contact
+from softafm.experiment.config import Experiment, build_experiment, load_experiment, set_values
 from softafm.progress import Progress
 
 if TYPE_CHECKING:
@@ -59,11 +60,16 @@ def make_experiment(source: Source, overrides: Sequence[str] = ()) -> Experiment
         return source
     if isinstance(source, str | Path):
         return load_experiment(source, overrides)
+    if isinstance(source, Contact):
+        raise ValueError(
+            f"experiment = {type(source).__name__}: must say how the tip moves, too; a contact "
+            "itself has scales such as contact.tabor_relaxed, and the modes take it, such as "
+            "force_distance"
+        )
     wanted = "the path of a TOML file, a dict of its tables or what load_experiment returned"
     refuse_other("experiment", source, Mapping, wanted)
     document = {key: deepcopy(value) for key, value in source.items()}
     for key in document:
         refuse_other("key of an experiment", key, str, "the name of a table, such as 'tip'")
-    for override in overrides:
-        set_value(document, override)
+    set_values(document, overrides)
     return build_experiment(document, Path())
