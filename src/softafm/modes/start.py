@@ -7,11 +7,13 @@ from softafm.checks.kinds import refuse_other
 from softafm.checks.validate import check_tabor, check_tolerance
 from softafm.contact import Contact
 from softafm.errors import AccuracyWarning
+from softafm.instrument.agreement import check_motion
 from softafm.instrument.cantilever import Cantilever
-from softafm.instrument.motion import check_motion, find_setpoint, is_steady, list_doubts
+from softafm.instrument.motion import find_setpoint, is_steady, list_doubts
 from softafm.progress import make_reporter
 from softafm.solvers.energy import Energy
-from softafm.solvers.solver import check_history, check_solver
+from softafm.solvers.own import solve
+from softafm.solvers.solver import check_solver
 
 
 def carry(contact, motion, solver, tolerance, profiles, progress, **options):
@@ -30,10 +32,10 @@ def carry(contact, motion, solver, tolerance, profiles, progress, **options):
     for warning in doubts:
         warn_caller(warning)
     with make_reporter(progress) as report:
-        history = solver.solve(
-            contact, motion, tolerance=tolerance, profiles=profiles, progress=report, **options
-        )
-    check_history(solver, history)
+        history = solve(
+            solver, contact, motion,
+            tolerance=tolerance, profiles=profiles, progress=report, **options,
+        )  # fmt: skip
     return solver, tolerance, replace(history, warnings=(*doubts, *history.warnings))
 
 
