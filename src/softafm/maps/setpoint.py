@@ -20,6 +20,7 @@ from softafm.modes.amplitude_curve import AmplitudeCurve
 from softafm.modes.driven import doubt_sine
 from softafm.modes.tap_map import OBSERVABLES, TapMap
 from softafm.modes.tapping import observe_taps
+from softafm.solvers.own import solve
 from softafm.solvers.solver import Solver
 
 ATTRACTIVE, REPULSIVE = 0, 1
@@ -88,7 +89,7 @@ class Setpoint:
         amplitude = self.amplitude if amplitude is None else amplitude
         with collect_warnings(self.warned):
             motion = Sine(amplitude + approach, amplitude, self.frequency, "steady")
-            history = self.solver.solve(contact, motion, tolerance=self.tolerance)
+            history = solve(self.solver, contact, motion, tolerance=self.tolerance)
         self.taps += 1
         found = observe_taps(contact, motion, history)
         return np.array([found[name] for name in OBSERVABLES])

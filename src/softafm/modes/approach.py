@@ -36,6 +36,7 @@ from softafm.modes.tap_map import OBSERVABLES, TapMap
 from softafm.modes.tapping import observe_taps
 from softafm.progress import Progress, make_reporter
 from softafm.results.content import DIRECTIONS, Labelled, observables
+from softafm.solvers.own import solve
 from softafm.solvers.solver import Solver
 from softafm.units.quantities import write_quantity
 
@@ -122,7 +123,7 @@ def _simulate(inputs: Inputs, settings: Settings) -> Outcome:
         warned: list[AccuracyWarning] = []
         with collect_warnings(warned):
             motion = Sine(amplitude + approach, amplitude, frequency, "steady")
-            history = solver.solve(contact, motion, tolerance=tolerance)
+            history = solve(solver, contact, motion, tolerance=tolerance)
         doubts.extend(((amplitude, approach), warning) for warning in warned)
         found = observe_taps(contact, motion, history)
         return np.array([found[name] for name in OBSERVABLES])

@@ -8,12 +8,14 @@ from softafm.checks.kinds import refuse_other
 from softafm.checks.validate import check_tabor, check_tolerance
 from softafm.contact import Contact
 from softafm.errors import AccuracyWarning
+from softafm.instrument.agreement import check_motion
 from softafm.instrument.cantilever import Cantilever
-from softafm.instrument.motion import Motion, check_motion, find_setpoint, is_steady, list_doubts
+from softafm.instrument.motion import Motion, find_setpoint, is_steady, list_doubts
 from softafm.progress import Progress, make_reporter
 from softafm.solvers.energy import Energy
 from softafm.solvers.history import History
-from softafm.solvers.solver import Solver, check_history, check_solver
+from softafm.solvers.own import solve
+from softafm.solvers.solver import Solver, check_solver
 
 
 def carry(
@@ -40,10 +42,10 @@ def carry(
     for warning in doubts:
         warn_caller(warning)
     with make_reporter(progress) as report:
-        history = solver.solve(
-            contact, motion, tolerance=tolerance, profiles=profiles, progress=report, **options
-        )
-    check_history(solver, history)
+        history = solve(
+            solver, contact, motion,
+            tolerance=tolerance, profiles=profiles, progress=report, **options,
+        )  # fmt: skip
     return solver, tolerance, replace(history, warnings=(*doubts, *history.warnings))
 
 

@@ -23,33 +23,55 @@ class Profiles:
 
 @dataclass(frozen=True)
 class History:
-    """One contact through one motion. Arrays over the accepted steps, shape (n,)."""
+    """One contact through one motion: what every solver returns.
+
+    Attributes
+    ----------
+    time
+        Instants at the ends of the accepted steps, ever later, s, shape (n,). The first is the
+        first break of ``motion``, the last its last.
+    tip_height
+        Height h0 of the apex above the undeformed surface, m, shape (n,). On a lever, the height
+        of the base is ``motion.height(time)``, and the difference the deflection.
+    force
+        Force on the tip, N, positive = repulsive, shape (n,).
+    contact_radius
+        Radius of the largest tension, m, 0 out of contact, shape (n,).
+    axis_deformation
+        Displacement u of the surface under the apex, m, positive towards the tip, shape (n,).
+    viscous_power
+        Power dissipated in the sample's dashpots, W, not negative, shape (n,).
+    pieces
+        Slices of the steps over which the history is smooth: they cover all steps, and neighbours
+        share the step at a break of the motion, and none at an elastic jump.
+    jump_time
+        Instants of elastic jumps, s, shape (jump,); may be empty.
+    jump_energy
+        Energy that each jump released, J, shape (jump,).
+    motion
+        The motion as it was carried out: where a setpoint force turned it, what its ``turned_at``
+        returned, which has other breaks than the motion asked for.
+    profiles
+        ``Profiles``, the shapes of the surface, if they were asked for, else None.
+    diagnostics
+        Numbers by name, such as ``steps``, which become attributes of results.
+    warnings
+        The ``AccuracyWarning`` that the solver has given, a tuple.
+    """
 
     time: np.ndarray
-    """Instants, s."""
     tip_height: np.ndarray
-    """Height h0 of the apex above the flat surface, m."""
     force: np.ndarray
-    """Force on the tip, N, positive = repulsive."""
     contact_radius: np.ndarray
-    """Radius of the largest tension, m; 0 out of contact."""
     axis_deformation: np.ndarray
-    """Displacement u of the surface under the apex, m, positive towards the tip."""
     viscous_power: np.ndarray
-    """Power dissipated in the sample's dashpots, W."""
     pieces: tuple[slice, ...]
-    """Runs of steps over which the history is smooth; neighbours share the step at a break of the
-    motion, and none at an elastic jump."""
     jump_time: np.ndarray
-    """Instants of elastic jumps, s, shape (jump,)."""
     jump_energy: np.ndarray
-    """Energy each jump released, J, shape (jump,)."""
     motion: Motion
-    """The motion as it was carried out: a ramp may have been turned by a force."""
     profiles: Profiles | None = None
     diagnostics: dict[str, float] = field(default_factory=dict)
     warnings: tuple[AccuracyWarning, ...] = ()
-    """What the solver doubts; it has warned of it, too."""
     _quadratures: dict[Any, Any] = field(
         default_factory=dict, init=False, repr=False, compare=False
     )

@@ -3,7 +3,7 @@
 from inspect import Parameter, signature
 from typing import Any, Protocol
 
-from softafm.checks.kinds import members, refuse_incomplete, refuse_other
+from softafm.checks.kinds import members, refuse_incomplete
 from softafm.checks.refusals import join_with_and
 from softafm.instrument.motion import Motion
 from softafm.progress import Progress
@@ -66,9 +66,3 @@ def check_solver(solver: Any) -> None:
             f"solver.solve: of the solver '{solver.kind}' must take {join_with_and(missing)}; "
             "softafm.solvers.solver.Solver states its arguments"
         )
-
-
-def check_history(solver: Solver, history: Any) -> None:
-    """Raise ValueError if what a solver has returned is no history."""
-    wanted = f"a softafm.solvers.History, of the solver '{solver.kind}'"
-    refuse_other("history", history, History, wanted)

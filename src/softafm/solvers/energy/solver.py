@@ -5,7 +5,7 @@ from time import perf_counter
 from typing import Any, ClassVar
 
 from softafm.checks.callers import warn_caller
-from softafm.checks.validate import check_finite, check_positive
+from softafm.checks.validate import check_finite, check_positive, check_tolerance
 from softafm.compiled.announce import announce_compilation
 from softafm.instrument.lever import Lever, check_lever, make_lever
 from softafm.instrument.motion import Motion, count_periods, is_steady
@@ -82,10 +82,12 @@ class Energy:
         Raises
         ------
         ValueError
-            If ``lever`` is none, or a stiffness is given besides.
+            If ``tolerance`` is not from 1e-5 to 0.1, ``lever`` is none, or a stiffness is given
+            besides.
         DivergedError
             If ``most_steps`` do not suffice or no stable shape is found.
         """
+        tolerance = check_tolerance(tolerance)
         if lever is None:
             lever = make_lever(stiffness)
         elif stiffness is not None:

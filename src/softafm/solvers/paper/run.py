@@ -9,6 +9,7 @@ import numpy as np
 
 from softafm.bodies.mesh import beyond
 from softafm.checks.callers import warn_caller
+from softafm.checks.validate import check_tolerance
 from softafm.errors import AccuracyWarning, DivergedError
 from softafm.instrument.motion import Motion, count_periods, is_steady
 from softafm.instrument.motions import find_lowest_height
@@ -80,10 +81,12 @@ def march(
 
     Raises
     ------
+    ValueError
+        If ``tolerance`` is not from 1e-5 to 0.1.
     DivergedError
         If the tip runs into the surface, a number overflows or an iteration does not converge.
     """
-    started = perf_counter()
+    started, tolerance = perf_counter(), check_tolerance(tolerance)
     run = _Run(
         discretisation,
         contact,
