@@ -176,7 +176,7 @@ def test_a_figure_shows_what_results_hold(figure):
         ({"rise": None}, "mode 'dent': variable 'rise' holds 'object': must hold numbers"),
         ({"rise": [1.0, 2.0]}, "mode 'dent': observable 'rise' has the shape (2,): must be a si"),
         ({"rise": [1.0, [2.0]]}, "mode 'dent': observable 'rise' = [1.0, [2.0]]: must be numbers"),
-        ({"base_height": 1.0}, "mode 'dent': observable 'base_height' has the shape (): must be o"),
+        ({"base_height": 0.5}, "mode 'dent': observable 'base_height' has the shape (): must be o"),
         ({"base_height": [1.0]}, "mode 'dent': observable 'base_height' has 1 values along time: "),
         ({"rsie": 1.0}, "mode 'dent': observe returns rsie: must be among its observables"),
     ],

@@ -1,7 +1,7 @@
 """The enhanced Attard's model: the surface as a sum of radial functions."""
 
 from dataclasses import dataclass, field
-from typing import Any, ClassVar, Literal
+from typing import Annotated, Any, ClassVar, Literal
 
 import numpy as np
 
@@ -13,6 +13,7 @@ from softafm.compiled.announce import announce_compilation
 from softafm.progress import Progress
 from softafm.solvers.history import History
 from softafm.solvers.paper.stepping import AdamsBashforth, Stepper, check_stepper
+from softafm.units.quantities import LENGTH
 
 # What is expanded: u = carried·(h0 + g) + sign·Σ a_i f_i.
 _EXPANSIONS = {"deformation": (0.0, 1.0), "gap": (1.0, -1.0), "bounded-gap": (0.0, -1.0)}
@@ -71,7 +72,7 @@ class EnhancedAttard:
     basis: Literal["cosine", "bessel"] = "cosine"
     expand: Literal["deformation", "gap", "bounded-gap"] = "deformation"
     orthogonal: bool = True
-    domain: float | None = None
+    domain: Annotated[float, LENGTH] | None = None
     quadrature: Literal["trapezoid", "midpoint"] = "trapezoid"
     steps: int = 10_000
     stepper: Stepper = field(default_factory=AdamsBashforth)
