@@ -21,12 +21,14 @@ from own_modes import modes_restored
 import softafm as sa
 from softafm import rheology, surfaces, tips
 from softafm.app.python_lines import write_python
+from softafm.checks import validate
 from softafm.draw.results import plot
 from softafm.draw.summary import list_observables
 from softafm.experiment import schema
 from softafm.experiment.config import build_experiment, load_experiment, read_example
 from softafm.experiment.regime import list_rows
 from softafm.sweeps.reading import make_campaign, read_table
+from softafm.units import quantities
 
 DOCS = Path(__file__).parents[1] / "docs"
 PACKAGE = Path(sa.__file__).parent
@@ -291,11 +293,11 @@ def test_the_mode_of_the_extending_page_becomes_one_of_the_program_by_a_file_and
     describe_section = EXTENDING.split("\n## A mode\n")[1].split("\n## ")[0]
     *blocks, _ = re.findall(r"```python\n(.*?)```", describe_section, re.S)
     (package / "modes" / "stress_relaxation.py").write_text("\n".join(blocks), encoding="utf-8")
+    imported, registered = re.search(r"```text\n(.*?)```", describe_section, re.S)[1].splitlines()
     table = package / "modes" / "__init__.py"
-    lines = table.read_text(encoding="utf-8").replace(
-        "import approach,", "import stress_relaxation, approach,"
-    )
-    table.write_text(f"{lines}register(stress_relaxation.MODE)\n", encoding="utf-8")
+    lines = table.read_text(encoding="utf-8")
+    lines = re.sub("^from softafm.modes import .*$", imported, lines, flags=re.M)
+    table.write_text(f"{lines}{registered}\n", encoding="utf-8")
     file = tmp_path / "relaxation.toml"
     file.write_text(
         "\n".join(f"{key} = {_inline(value)}" for key, value in {**SOFT, **RELAXING}.items()),
@@ -308,6 +310,40 @@ def test_the_mode_of_the_extending_page_becomes_one_of_the_program_by_a_file_and
     )  # fmt: skip
     assert (done.returncode, done.stderr) == (0, "")
     assert done.stdout.startswith("stress-relaxation, before any run")
+    heavy = "{'matplotlib', 'numba', 'pydantic', 'scipy', 'xarray'}"
+    look = f"import softafm, sys; assert softafm.modes.MODES; print(*{heavy} & set(sys.modules))"
+    light = subprocess.run(
+        [sys.executable, "-c", look], cwd=tmp_path, env={**os.environ, "PYTHONPATH": str(tmp_path)},
+        capture_output=True, text=True, check=True,
+    )  # fmt: skip
+    assert light.stdout == "\n"
+
+
+def test_the_lines_of_the_extending_page_make_its_law_a_choice_of_files(extending, monkeypatch):
+    section = EXTENDING.split("\n## In experiment files\n")[1].split("\n## ")[0]
+    lines = re.search(r"```text\n(.*?)```", section, re.S)[1]
+    imported, key, law, _ = lines.splitlines()
+    assert imported == "from softafm.surfaces.screened import Screened"
+    with pytest.raises(ValueError, match=r"^strength of Screened: add it to KEYS of softafm/exp"):
+        schema._make_table(extending.Screened)
+    for name, unit in eval(f"{{{key}\n}}", vars(schema)).items():
+        monkeypatch.setitem(schema.KEYS, name, unit)
+    chooser, laws = schema.CHOICES["surface"]
+    laws = laws | eval(f"{{{law}\n}}", {**vars(schema), "Screened": extending.Screened})
+    written = {"law": "screened", "strength": "100 MPa", "decay": "0.5 nm", "core": "0.2 nm"}
+    built = schema.build_choice("surface", written, chooser, laws, folder=Path())
+    assert built == extending.contact.surface
+    wrong = {**written, "core": "3 nm"}
+    with pytest.raises(ValueError, match=r"^surface\.core = '3 nm': must be below surface\.dec"):
+        schema.build_choice("surface", wrong, chooser, laws, folder=Path())
+
+
+def test_the_extending_page_names_all_units_and_checks():
+    section = EXTENDING.split("\n## A mode\n")[1].split("\n## ")[0]
+    units = {name for name, each in vars(quantities).items() if isinstance(each, quantities.Kind)}
+    assert units == {name for name in re.findall(r"`([A-Z_]{4,})`", section) if name != "MODE"}
+    for check in re.findall(r"`(check_\w+)`", section):
+        assert callable(getattr(validate, check))
 
 
 @pytest.mark.parametrize(
@@ -442,8 +478,9 @@ def test_the_command_line_page_lists_every_choice_with_its_keys(table):
 
 def test_the_command_line_page_lists_every_solver_with_its_keys():
     for name, solver in schema.CHOICES["solver"][1].items():
-        row = re.search(rf"`name = \"{name}\"` \| (.*) \|", COMMAND_LINE)[1]
-        assert set(re.findall(r"`(\w+)`", row)) == set(solver.model_fields)
+        row = re.search(rf"`name = \"{name}\"` \| (.*) \|", COMMAND_LINE)
+        assert row is not None, f"docs/command-line.md has no row for the solver '{name}'"
+        assert set(re.findall(r"`(\w+)`", row[1])) == set(solver.model_fields)
 
 
 @pytest.mark.parametrize("snippet", re.findall(r"```toml\n(.*?)```", COMMAND_LINE, re.S))

@@ -247,8 +247,9 @@ def test_a_record_that_does_not_fit_is_refused(change, line):
 
 def test_a_name_means_the_same_in_all_results():
     stolen = replace(
-        LOADS, axes=modes.Axes(), observables={"force": modes.Observable("Hz", "frequency shift")}
-    )
+        LOADS, axes=modes.Axes(), figure=modes.Layout((("force", "force"),)),
+        observables={"force": modes.Observable("Hz", "frequency shift")},
+    )  # fmt: skip
     with modes_restored(), pytest.raises(ValueError, match=r"'force' of mode 'load-curve': this"):
         modes.register(stolen)
     assert "load-curve" not in modes.MODES
@@ -288,7 +289,7 @@ def test_what_is_observed_is_what_the_record_says():
     odd = replace(mode, name="odd", observe=lambda contact, motion, history: {"force_max": 1.0})
     with modes_restored():
         modes.register(odd)
-        with pytest.raises(ValueError, match=r"^mode 'odd': observe returns force_max, but the ob"):
+        with pytest.raises(ValueError, match=r"^mode 'odd': observe returns no force_min, force_m"):
             modes.perform(odd, SOFT, sa.Triangle(5e-9, -1e-9, 1e-6))
 
 
@@ -298,7 +299,7 @@ def test_a_motion_that_no_file_can_describe_is_refused():
         kind: ClassVar[str] = "odd"
         phase: complex
 
-    def odd_curve(contact, phase):
+    def odd_curve(contact, phase, ramp):
         raise AssertionError("it was to be refused before any run")
 
     odd = replace(LOADS, function=odd_curve, motions={"odd": Odd})

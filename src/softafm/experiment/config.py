@@ -302,7 +302,7 @@ def build_experiment(
     _refuse_run(contact, solver, run, document)
     if mode.simulate is None:
         used = regularise_contact(contact, run.regularise)
-        _refuse_motion(used, mode.path(built["motion"]), solver, document["motion"])
+        _refuse_motion(used, mode.find_path(built["motion"]), solver, document["motion"])
     return Experiment(
         mode=mode.name,
         contact=contact,

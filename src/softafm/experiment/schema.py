@@ -309,9 +309,6 @@ STEPPERS: dict[str, Stepper] = {
 }
 """How the steppers are written."""
 
-_WITH_UNIT = {"domain": Length}
-"""Parameters of solvers with a unit, which their type does not tell."""
-
 _PLAIN: dict[Any, Any] = {
     int: Whole,
     float: Number,
@@ -319,7 +316,7 @@ _PLAIN: dict[Any, Any] = {
     bool: Flag,
     Stepper: make_choice(STEPPERS),
 }
-"""How all other parameters are written, by the type that the dataclass declares."""
+"""How parameters without unit are written, by the type that the dataclass declares."""
 
 
 class Solver(Table):
@@ -333,7 +330,7 @@ class Solver(Table):
 
 def _make_solver_table(solver: type) -> type[Solver]:
     """Return the table of a solver, a dataclass whose parameters all have defaults."""
-    types = get_type_hints(solver)
+    types = get_type_hints(solver, include_extras=True)
     keys: dict[str, Any] = {
         f.name: (_find_key_type(f.name, types[f.name]), None) for f in fields(solver)
     }
@@ -344,8 +341,6 @@ def _make_solver_table(solver: type) -> type[Solver]:
 
 def _find_key_type(name: str, declared: Any) -> Any:
     """Return the type of a key that is a field of a dataclass; ValueError if there is none."""
-    if name in _WITH_UNIT:
-        return _WITH_UNIT[name]
     if NoneType in get_args(declared):
         (declared,) = (each for each in get_args(declared) if each is not NoneType)
     for unit in getattr(declared, "__metadata__", ()):
@@ -389,6 +384,11 @@ def _make_table(
     written = KEYS if file is None else {**KEYS, "file": Annotated[Any, *make_file_type(file)]}
     needed = _find_common_keys(constructors)
     names = dict.fromkeys(key for make in constructors for key in _list_keys(make)[1])
+    if unwritten := [key for key in names if key not in written]:
+        raise ValueError(
+            f"{join_with_and(unwritten)} of {constructors[0].__name__}: add it to KEYS of "
+            f'softafm/experiment/schema.py, such as "{unwritten[0]}": Annotated[Length, Positive]'
+        )
     keys: dict[str, Any] = {key: (written[key], ... if key in needed else None) for key in names}
     table = create_model(constructors[0].__name__, __base__=Thing, **keys)
     table.constructors = constructors

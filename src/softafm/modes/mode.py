@@ -1,16 +1,18 @@
 """A mode of an AFM: one record, which files, sweeps, figures and the page look up."""
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field, fields
+from dataclasses import dataclass, field
 from functools import cached_property
 from inspect import Parameter, signature
 from typing import TYPE_CHECKING, Any, Literal
 
+from softafm.checks.kinds import members, refuse_incomplete
 from softafm.checks.suggestions import call_also
-from softafm.checks.validate import check_choice
+from softafm.instrument.motion import Motion
 from softafm.modes.parts import Axes, Foreseen, Inputs, Layout, Outcome, Settings
+from softafm.modes.refusals import refuse_record, refuse_unknown_names
 from softafm.modes.scales import Scales, force_scales
-from softafm.results.content import HISTORY, Needed, Observable, declare, find_unit
+from softafm.results.content import HISTORY, MAPS, Needed, Observable, declare
 
 if TYPE_CHECKING:
     from xarray import Dataset
@@ -84,8 +86,9 @@ class Mode:
     Raises
     ------
     ValueError
-        If neither or both of ``observe`` and ``simulate`` are given, there is no motion, the lever
-        is none of these, or the function lacks an argument for a field of a motion.
+        If neither or both of ``observe`` and ``simulate`` are given, something is not of the kind
+        stated here, or the function lacks an argument for a field of a motion, for a table or for
+        the lever.
     """
 
     name: str
@@ -108,18 +111,7 @@ class Mode:
     other_names: str = ""
 
     def __post_init__(self) -> None:
-        if (self.observe is None) == (self.simulate is None):
-            raise ValueError(f"mode '{self.name}': must have either observe or simulate")
-        check_choice(f"mode '{self.name}': lever", self.lever, ("", "stiffness", "resonator"))
-        if not self.motions:
-            raise ValueError(f"mode '{self.name}': motions is empty; must hold at least one")
-        asked = () if self.takes_motion else self.motions.values()
-        for name in dict.fromkeys(each.name for motion in asked for each in fields(motion)):
-            if name not in self.parameters:
-                raise ValueError(
-                    f"mode '{self.name}': {self.function.__name__} has no argument {name}, which "
-                    "is a field of its motion; must have one, or take motion"
-                )
+        refuse_record(self)
 
     @cached_property
     def parameters(self) -> tuple[str, ...]:
@@ -149,35 +141,52 @@ class Mode:
             return {"motion": motion}
         return {name: getattr(motion, name) for name in self.parameters if hasattr(motion, name)}
 
+    def find_path(self, motion: Any) -> Any:
+        """Return the motion of the tip, or of the base of its lever; ValueError if it is none."""
+        path = self.path(motion)
+        wanted = "a motion such as softafm.Triangle, which the record's path is to make"
+        refuse_incomplete(f"mode '{self.name}': path", path, members(Motion), wanted)
+        return path
+
     def expect(self, inputs: Inputs) -> Foreseen:
         """Return what a run will be like."""
-        return Foreseen(self.path(inputs.motion)) if self.foresee is None else self.foresee(inputs)
+        if self.foresee is not None:
+            return self.foresee(inputs)
+        return Foreseen(self.find_path(inputs.motion))
 
 
 MODES: dict[str, Mode] = {}
 """Every mode by name."""
 
 
-def register(mode: Mode) -> None:
+def register(mode: Mode, *, replace: bool = False) -> None:
     """Make a mode known to experiment files, sweeps, figures and the page of this process.
 
-    One of the same name is replaced.
+    Parameters
+    ----------
+    mode
+        Its record.
+    replace
+        Whether it takes the place of another record of this name, as when a notebook makes one
+        anew.
 
     Raises
     ------
     ValueError
-        If the name of an observable means something else in results, or nothing says what a
-        dimension of the axes is.
+        If the name is taken, the name of an observable means something else in results, nothing
+        says what a dimension is, or the figure shows what no result of the mode holds.
     """
-    for name in mode.axes.dims:
-        if name not in mode.observables and find_unit(name) is None:
-            raise ValueError(
-                f"mode '{mode.name}': the dimension {name} must be among the observables, as "
-                f"Observable(unit, words, ('{name}',))"
-            )
+    if mode.name in MAPS:
+        raise ValueError(f"mode '{mode.name}': a kind of imaging has this name; take another")
+    if not replace and MODES.get(mode.name, mode) is not mode:
+        raise ValueError(
+            f"mode '{mode.name}': another mode of this name is registered; take another name, or "
+            "register(mode, replace=True)"
+        )
     variables = {name: each.dims for name, each in mode.observables.items()}
     if mode.observe is not None:
         variables = HISTORY | variables
+    refuse_unknown_names(mode, variables)
     needed = Needed(variables, numbers=mode.diagnostics, inputs=mode.inputs, gaps=mode.gaps)
     declare(mode.name, needed, mode.observables)
     call_also(mode.name, mode.other_names)

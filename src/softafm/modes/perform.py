@@ -2,15 +2,17 @@
 
 from collections.abc import Mapping
 from functools import partial
+from inspect import Parameter, signature
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
-from softafm.checks.refusals import join_with_and
+from softafm.checks.refusals import show, suggest
 from softafm.contact import Contact
 from softafm.instrument.cantilever import Cantilever
 from softafm.modes.check import compare_with_finer, plan_finer_run
 from softafm.modes.mode import MODES, Mode
 from softafm.modes.parts import Inputs, Outcome, Settings
+from softafm.modes.refusals import refuse_observed, refuse_strange
 from softafm.modes.start import carry, refuse_other_than_cantilever, regularise_contact
 from softafm.progress import Progress
 from softafm.results.content import HISTORY
@@ -19,6 +21,8 @@ from softafm.solvers.solver import Solver
 
 if TYPE_CHECKING:
     from xarray import Dataset
+
+_OPTIONS = ("solver", "tolerance", "profiles", "progress", "check", "regularise")
 
 
 def perform(
@@ -34,6 +38,7 @@ def perform(
     progress: bool | Progress | None = None,
     check: bool = False,
     regularise: float | None = None,
+    **unknown: Any,
 ) -> "Dataset":
     """Run a mode and return its result, as the public functions of all modes do.
 
@@ -49,18 +54,35 @@ def perform(
     Raises
     ------
     ValueError
-        If an argument is out of range, or the mode is not registered.
+        If an argument is out of range, the mode is not registered, or what it observed is not what
+        its record says.
+    TypeError
+        If there is no such option.
     DivergedError
         If the solver cannot continue.
     """
+    if unknown:
+        name = next(iter(unknown))
+        parameters = signature(mode.function).parameters.values()
+        named = [each.name for each in parameters if each.kind is not Parameter.VAR_KEYWORD]
+        raise TypeError(
+            f"{mode.function.__name__}() got {name} = {show(unknown[name])}, which is no argument "
+            f"of it: {suggest(name, list(dict.fromkeys([*named, *_OPTIONS])))}"
+        )
     if MODES.get(mode.name) is not mode:
         raise ValueError(f"mode '{mode.name}' is not known: call softafm.modes.register with it")
     finer = plan_finer_run(check, solver, tolerance)
     given, contact = contact, regularise_contact(contact, regularise)
     if mode.lever:
         refuse_other_than_cantilever(cantilever)
+    elif cantilever is not None:
+        raise ValueError(
+            f"cantilever = {show(cantilever)}: must be left out, or lever of the mode "
+            f"'{mode.name}' be 'stiffness' or 'resonator'"
+        )
     inputs = Inputs(contact, motion, cantilever, tables)
     found = simulate(mode, inputs, Settings(solver, tolerance, profiles, progress))
+    refuse_observed(mode, found)
     result = assemble_history(mode.name, contact, *found)
     record_regularisation(result, given, contact, regularise)
     if finer is not None:
@@ -80,11 +102,7 @@ def simulate(mode: Mode, inputs: Inputs, settings: Settings) -> Outcome:
     data, coordinates = history_variables(contact, history)
     assert mode.observe is not None
     values = mode.observe(contact, motion, history)
-    if values.keys() != mode.observables.keys():
-        raise ValueError(
-            f"mode '{mode.name}': observe returns {join_with_and(sorted(values))}, but the "
-            f"observables are {join_with_and(sorted(mode.observables))}"
-        )
+    refuse_strange(mode, values)
     observed = {name: (mode.observables[name].dims, each) for name, each in values.items()}
     data = {name: data[name] for name in HISTORY} | observed | data  # shapes of the surface last
     return Outcome(

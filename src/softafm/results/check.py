@@ -60,7 +60,7 @@ def refuse_unusable(attributes: Mapping[str, Any], variables: Variables) -> None
         _refuse_variable(name, dimensions, variables, gaps=needed.gaps and name not in along)
     for name in variables:
         if name not in wanted and find_unit(name) is not None:
-            _refuse_values(name, variables[name][1], gaps=needed.gaps)
+            refuse_values(name, variables[name][1], gaps=needed.gaps)
 
 
 def _refuse_experiment(mode: str, needed: Needed, attributes: Mapping[str, Any]) -> None:
@@ -163,12 +163,12 @@ def _refuse_variable(
         if sorted(map(str, values)) != sorted(BRANCHES):
             raise ValueError(f"variable 'branch' must hold {join_with_or(BRANCHES)}, each once")
         return
-    _refuse_values(name, values, gaps=gaps)
+    refuse_values(name, values, gaps=gaps)
     if name in RISING and not (np.diff(values) > 0).all():
         raise ValueError(f"variable '{name}' must rise from value to value")
 
 
-def _refuse_values(name: str, values: np.ndarray, *, gaps: bool) -> None:
+def refuse_values(name: str, values: np.ndarray, *, gaps: bool) -> None:
     """Refuse values that are no numbers, or larger than what the unit of a known name allows."""
     if values.dtype.kind not in "fiu":
         raise ValueError(f"variable '{name}' holds {show(values.dtype.name)}: must hold numbers")
@@ -178,4 +178,5 @@ def _refuse_values(name: str, values: np.ndarray, *, gaps: bool) -> None:
     wrong = ~(np.abs(numbers) <= largest)
     if wrong.any():
         value = numbers[wrong][0]
-        raise ValueError(f"variable '{name}' holds {value:g} {units}: must be within {largest:g}")
+        valid = "a finite number" if np.isnan(value) else f"within {largest:g}"
+        raise ValueError(f"variable '{name}' holds {value:g} {units}: must be {valid}")

@@ -6,6 +6,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from softafm.units.quantities import is_coherent
+
 if TYPE_CHECKING:
     from xarray import Variable
 
@@ -51,6 +53,8 @@ VARIABLES = {
     "material": ("1", "number of the material"),
 }
 """Unit and long name of every variable of a result, by name; a mode declares what is its own."""
+_BUILT_IN = frozenset(VARIABLES)
+_UNITS = frozenset(unit for unit, _ in VARIABLES.values())
 
 DIRECTIONS = {"approach": "falls", "retract": "rises"}
 """Directions of a sweep of the height, and what it does then."""
@@ -106,6 +110,17 @@ class Observable:
     units: str
     long_name: str
     dims: tuple[str, ...] = ()
+
+    def __post_init__(self) -> None:
+        if self.units not in _UNITS and not is_coherent(self.units):
+            raise ValueError(
+                f"units = {self.units!r}: must be an SI unit without prefix, such as 'm', 'N/m' or "
+                "'1', as results are in SI"
+            )
+        if not isinstance(self.long_name, str) or not self.long_name.strip():
+            raise ValueError(f"long_name = {self.long_name!r}: must say in words what it is")
+        if not isinstance(self.dims, tuple) or not all(isinstance(d, str) for d in self.dims):
+            raise ValueError(f"dims = {self.dims!r}: must be a tuple of names, such as ('time',)")
 
 
 @dataclass(frozen=True)
@@ -169,15 +184,19 @@ def declare(mode: str, needed: Needed, observed: Mapping[str, Observable]) -> No
     ValueError
         If the name of an observable means something else in results.
     """
+    others = {name for known, each in NEEDED.items() if known != mode for name in each.variables}
+    own = VARIABLES.keys() - _BUILT_IN - others
+    new = [name for name in observed if name in own or find_unit(name) is None]
     for name, each in observed.items():
-        unit = find_unit(name)
-        if unit is None:
-            VARIABLES[name] = each.units, each.long_name
-        elif (each.units, each.long_name) != _meaning(name):
-            raise ValueError(
-                f"observable '{name}' of mode '{mode}': this name means {_meaning(name)[1]}, in "
-                f"{unit}, in all results; take another name"
-            )
+        if name in new or (each.units, each.long_name) == _meaning(name):
+            continue
+        over = f", over={each.dims}" if each.dims else ""
+        raise ValueError(
+            f"observable '{name}' of mode '{mode}': this name means {_meaning(name)[1]}, in "
+            f"{find_unit(name)}, in all results; take observables('{name}'{over}), which means "
+            "just that, or another name"
+        )
+    VARIABLES.update({name: (observed[name].units, observed[name].long_name) for name in new})
     NEEDED[mode] = needed
 
 

@@ -110,6 +110,18 @@ def is_unit(text: str) -> bool:
         return False
 
 
+def is_coherent(text: Any) -> bool:
+    """Whether a text is a unit of the SI without prefix, such as "N/m"; "kg" is one."""
+    if not isinstance(text, str) or not is_unit(text):
+        return False
+    plain = plain_units.parse(text)
+    if plain is not None:
+        return plain.factor == 1
+    registry = _build_registry()
+    factor, _ = registry.get_base_units(registry.parse_units(text))
+    return bool(factor == 1)
+
+
 def read_quantity(written: object, kind: Kind) -> float:
     """Return in SI the quantity written as text, such as ``"10 nm"``.
 

@@ -1,7 +1,7 @@
 """Attard's solver: the surface at equal nodes, its rates by iteration or by one linear solve."""
 
 from dataclasses import dataclass, field
-from typing import Any, ClassVar, Literal
+from typing import Annotated, Any, ClassVar, Literal
 
 import numpy as np
 
@@ -14,6 +14,7 @@ from softafm.instrument.motion import Motion
 from softafm.progress import Progress
 from softafm.solvers.history import History
 from softafm.solvers.paper.stepping import ForwardEuler, Stepper, check_stepper
+from softafm.units.quantities import LENGTH
 
 
 @dataclass(frozen=True)
@@ -59,7 +60,7 @@ class Attard:
     kind: ClassVar[str] = "attard"
     adaptive: ClassVar[bool] = False
     nodes: int = 70
-    domain: float | None = None
+    domain: Annotated[float, LENGTH] | None = None
     method: Literal["iterative", "explicit"] = "iterative"
     steps: int = 10_000
     stepper: Stepper = field(default_factory=ForwardEuler)

@@ -1,7 +1,7 @@
 """The enhanced Attard's model: the surface as a sum of radial functions."""
 
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any, ClassVar, Literal
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal
 
 import numpy as np
 
@@ -14,6 +14,7 @@ from softafm.instrument.motion import Motion
 from softafm.progress import Progress
 from softafm.solvers.history import History
 from softafm.solvers.paper.stepping import AdamsBashforth, Stepper, check_stepper
+from softafm.units.quantities import LENGTH
 
 if TYPE_CHECKING:
     from softafm.solvers.paper.run import Discretisation
@@ -75,7 +76,7 @@ class EnhancedAttard:
     basis: Literal["cosine", "bessel"] = "cosine"
     expand: Literal["deformation", "gap", "bounded-gap"] = "deformation"
     orthogonal: bool = True
-    domain: float | None = None
+    domain: Annotated[float, LENGTH] | None = None
     quadrature: Literal["trapezoid", "midpoint"] = "trapezoid"
     steps: int = 10_000
     stepper: Stepper = field(default_factory=AdamsBashforth)
