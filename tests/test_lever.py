@@ -1,5 +1,6 @@
 """Levers as objects: what they remember, what they are asked, and one of the user's own."""
 
+import re
 from dataclasses import dataclass
 from math import cos, inf, pi, sin
 
@@ -144,6 +145,78 @@ def test_what_is_no_lever_is_refused(lever, stiffness, said):
         sa.solvers.Energy().solve(
             SOFT, sa.Triangle(1e-8, -2e-9, 2e-6), lever=lever, stiffness=stiffness
         )
+
+
+@compile_when_used(RESPONSE)
+def swapped(time, step, deflection, force, parameters, state):
+    return parameters[0], deflection
+
+
+@compile_when_used(RESPONSE)
+def meddling(time, step, deflection, force, parameters, state):
+    state[0] = time
+    return deflection, parameters[0]
+
+
+@compile_when_used(RESPONSE)
+def uncompilable(time, step, deflection, force, parameters, state):
+    return undefined(time), 1.0  # noqa: F821
+
+
+@compile_when_used(ACCEPTANCE)
+def spoiling(time, step, before, force, parameters, state):
+    state[0] = inf
+
+
+class Own(Spring):
+    """A spring of which a test states one thing anew."""
+
+    def at_start(self):
+        return np.zeros(1)
+
+
+RESPONDING, KEEPING, PARAMETERS = Counting(2.0).compiled_response
+DECORATED = r"must be a function decorated with softafm\.compiled\.functions\.compile_when_used"
+
+
+@pytest.mark.parametrize(
+    ("stated", "said"),
+    [
+        ({"stiffness": -1.0}, r"stiffness = -1 N/m: must be greater than 0"),
+        ({"stiffness": "0.5 N/m"}, "stiffness = '0.5 N/m': must be a number in N/m"),
+        ({"falling": lambda self: self}, "falling: must take a creep time, s: "),
+        ({"falling": lambda self, creep_time: None}, r"falling\(\.\.\.\) = None: must be a lever"),
+        ({"at_start": lambda self: 0.0}, r"at_start\(\) = 0.0: must be an array of finite floats"),
+        ({"compiled_response": lambda self: 0}, "compiled_response = <.*: must be a property that"),
+        ({"compiled_response": (RESPONDING, PARAMETERS)}, "compiled_response = .* three things"),
+        ({"compiled_response": (cos, KEEPING, PARAMETERS)},
+         rf"compiled_response\[0\] = .*{DECORATED}"),
+        ({"compiled_response": (RESPONDING, RESPONDING, PARAMETERS)},
+         rf"compiled_response\[1\] = .*{DECORATED}\(ACCEPTANCE\)"),
+        ({"compiled_response": (RESPONDING, remember_nothing, [2.0, 0.0])},
+         r"compiled_response\[2\] = \[2.0, 0.0\]: must be an array of finite floats"),
+        ({"compiled_response": (swapped, remember_nothing, PARAMETERS)},
+         r"compiled_response\[0\] = \(2 m, 0 N/m\) .*: must be a finite rest, then a stiffness"),
+        ({"compiled_response": (meddling, remember_nothing, PARAMETERS)}, "changes the state"),
+        ({"compiled_response": (RESPONDING, spoiling, PARAMETERS)}, "the state after .* = .*inf"),
+        ({"compiled_response": (uncompilable, remember_nothing, PARAMETERS)},
+         "must be a function that numba compiles: .*'undefined'"),
+    ],
+)  # fmt: skip
+def test_a_lever_whose_functions_do_not_do_their_part_is_refused(stated, said):
+    own = type("Stated", (Own,), {**stated, "__init__": lambda self: None, "creep_time": 0.0})
+    if "stiffness" not in stated:
+        own.stiffness = 2.0
+    with pytest.raises(ValueError, match=r"^(lever\.|the state)") as refused:
+        sa.solvers.Energy().solve(SOFT, sa.Triangle(1e-8, -2e-9, 2e-6), lever=own())
+    assert re.search(said, str(refused.value))
+    assert str(refused.value).isprintable()
+
+
+def test_a_cantilever_in_place_of_a_lever_is_told_of_its_spring():
+    said = r"goes into modes; .* must be softafm\.instrument\.lever\.Spring\(2\)$"
+    with pytest.raises(ValueError, match=said):
+        sa.solvers.Energy().solve(SOFT, sa.Triangle(1e-8, -2e-9, 2e-6), lever=sa.Cantilever(2.0))
 
 
 def test_a_spring_needs_a_stiffness():

@@ -9,17 +9,22 @@ from numpy.typing import ArrayLike
 
 from softafm.bodies import Body
 from softafm.bodies.body import body_of
-from softafm.checks.kinds import refuse_other
+from softafm.bodies.check import check_body
+from softafm.checks.kinds import is_built_in, refuse_other
 from softafm.checks.validate import check_tabor
 from softafm.rheology import Solid
+from softafm.rheology.check import check_compliance, check_sample
 from softafm.surfaces import SurfaceLaw
+from softafm.surfaces.check import check_law
 from softafm.surfaces.limits import LONGEST
 from softafm.tips import Tip
+from softafm.tips.check import check_tip
 
 _ZOOMS, _POINTS = 9, 33
 _SOFT = 1e-4
 """Share of the modulus to which the repulsion of a law without attraction falls at the edge."""
 _MOST_STRETCHES, _SAME = 60, 1e-9
+_MOST_DOUBLINGS = 200
 
 
 @dataclass(frozen=True)
@@ -38,7 +43,8 @@ class Contact:
     Raises
     ------
     ValueError
-        If one of them is something else.
+        If one of them is something else, or of a class of the user's own that is not what the
+        guide to such classes asks for: profiles, laws, samples and bodies are tried here.
     """
 
     tip: Tip
@@ -47,10 +53,19 @@ class Contact:
 
     def __post_init__(self) -> None:
         refuse_other("tip", self.tip, Tip, "a tip such as softafm.Paraboloid")
-        body_of(self.sample)
         refuse_other(
             "surface", self.surface, SurfaceLaw, "a surface law such as softafm.LennardJones"
         )
+        check_tip(self.tip)
+        self._check_body()
+        check_law(self.surface)
+
+    def _check_body(self) -> None:
+        body = body_of(self.sample)
+        check_sample("sample" if body is not self.sample else "sample.sample", body.sample)
+        check_body(body)
+        if not is_built_in(body):
+            check_compliance("sample.compliance", body.compliance)
 
     @cached_property
     def body(self) -> Body:
@@ -258,8 +273,15 @@ class Contact:
         if depth < shallowest:
             return 0.0
         high = 2 * low
-        while self._relaxed_depth(np.array([high]))[0] < depth:
+        for _ in range(_MOST_DOUBLINGS):
+            if not self._relaxed_depth(np.array([high]))[0] < depth:
+                break
             low, high = high, 2 * high
+        else:
+            raise ValueError(
+                f"contact: no contact of the body '{self.body.kind}' is {depth:g} m deep; its "
+                "depth must rise with the radius of the contact"
+            )
         for _ in range(_ZOOMS):
             radius = np.linspace(low, high, _POINTS)
             above = np.flatnonzero(self._relaxed_depth(radius) >= depth)[:1]

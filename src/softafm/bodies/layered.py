@@ -1,6 +1,6 @@
 """Bodies of layers, stated by one function of the wavenumber."""
 
-from abc import abstractmethod
+from abc import ABC, abstractmethod
 from collections.abc import Hashable
 from dataclasses import dataclass
 from functools import lru_cache
@@ -14,7 +14,7 @@ from softafm.bodies.mesh import UnitMesh
 
 
 @dataclass(frozen=True)
-class Layered(HalfSpace):
+class Layered(HalfSpace, ABC):
     """A half-space of the ``sample`` at the surface, but for what other materials below change.
 
     A class of such bodies is a frozen dataclass that states ``kind``, ``length`` and ``factor``,

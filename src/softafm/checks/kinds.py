@@ -20,6 +20,24 @@ def members(protocol: type) -> tuple[str, ...]:
     return tuple(name for name in vars(protocol) if not name.startswith("_"))
 
 
+def is_built_in(value: Any) -> bool:
+    """Whether a class of this package made an object, none of the user's, derived or not."""
+    return type(value).__module__.startswith("softafm.")
+
+
+def check_kind(name: str, value: Any) -> None:
+    """Raise ValueError if an object of a user's class has no name, or that of another class."""
+    stated = next((each for each in type(value).__mro__ if "kind" in vars(each)), None)
+    kind = getattr(value, "kind", None)
+    inherited = stated is not None and stated.__module__.startswith("softafm.")
+    if inherited or not isinstance(kind, str):
+        of = type(value).__qualname__
+        raise ValueError(
+            f"{name}.kind = {kind!r}: must be a name that the class {of} states, as text: results "
+            "record it"
+        )
+
+
 def refuse_other(name: str, value: Any, kind: type | tuple[type, ...], wanted: str) -> None:
     """Raise ValueError if ``value`` is no instance of a class; ``wanted`` says in words of what."""
     if not isinstance(value, kind):
@@ -46,7 +64,10 @@ def refuse_sample(name: str, value: Any) -> None:
     """Raise ValueError if ``value`` lacks something that a sample has."""
     if hasattr(value, "reduced_compliance") and not hasattr(value, "compliance"):
         raise ValueError(f"{name} = {_describe_given(value)}: {REDUCED}")
-    refuse_incomplete(name, value, SAMPLE, "a sample such as softafm.Elastic")
+    wanted = "a sample such as softafm.Elastic"
+    if hasattr(value, "influence") and hasattr(value, "sample"):
+        wanted += ", and this is a body: take its sample, as body.sample"
+    refuse_incomplete(name, value, SAMPLE, wanted)
 
 
 def refuse_non_dataset(name: str, value: Any) -> None:

@@ -88,11 +88,11 @@ def check_choice(name: str, value: Any, choices: tuple[Any, ...]) -> Any:
     return value
 
 
-def check_poisson_ratio(value: float) -> float:
+def check_poisson_ratio(value: float, name: str = "poisson") -> float:
     """Return ``value`` if it lies in (-1, 0.5], the range of stable isotropic solids."""
-    number = check_finite("poisson", value, "")
+    number = check_finite(name, value, "")
     if not -1 < number <= 0.5:
-        raise ValueError(f"poisson = {number:g}: must be above -1 and at most 0.5")
+        raise ValueError(f"{name} = {number:g}: must be above -1 and at most 0.5")
     return number
 
 

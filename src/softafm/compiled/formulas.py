@@ -1,12 +1,16 @@
 """Formulas of surface laws and tip profiles: functions of one number, written in plain Python."""
 
 import inspect
+import re
 from collections.abc import Callable, Mapping
 from typing import NamedTuple
 
 import numpy as np
 
 from softafm.checks.validate import check_finite
+
+_TERMINAL_CODE = re.compile(r"\x1b\[[0-9;]*m")
+"""With these numba colours what it says."""
 
 
 class Shape(NamedTuple):
@@ -84,6 +88,7 @@ def bound_parameters(
 
 def find_first_line(error: Exception) -> str:
     """Return what numba has to say of a function, which it says in many lines and many types."""
-    lines = [line.strip() for line in str(error).splitlines() if line.strip()]
+    plain = _TERMINAL_CODE.sub("", str(error))
+    lines = [line.strip() for line in plain.splitlines() if line.strip()]
     reason = next((line for line in lines if not line.startswith("Failed in")), "")
     return f"{type(error).__name__}: {reason}"

@@ -6,7 +6,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from softafm.checks.kinds import refuse_other
+from softafm.checks.kinds import refuse_other, refuse_sample
+from softafm.rheology.check import check_sample
 from softafm.rheology.dma import sort_moduli
 from softafm.rheology.interconversion import chain_to_prony
 from softafm.rheology.lists import check_window
@@ -51,7 +52,9 @@ def plot_rheology(
     from matplotlib.figure import Figure
     from matplotlib.layout_engine import ConstrainedLayoutEngine
 
+    refuse_sample("sample", sample)
     refuse_other("sample", sample, Solid, "a sample such as softafm.Elastic")
+    check_sample("sample", sample)
     measured = None if data is None else sort_moduli(*data)
     shortest, longest = choose_times(sample, measured) if window is None else check_window(window)
     time = np.geomspace(shortest, longest, SAMPLES)

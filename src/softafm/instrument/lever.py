@@ -10,13 +10,20 @@ of the surface, and lets the lever remember F once the step is accepted.
 """
 
 from dataclasses import dataclass
-from math import inf
+from math import inf, isfinite
 from typing import Any, Protocol
 
 import numpy as np
 
-from softafm.checks.kinds import refuse_incomplete
+from softafm.checks.kinds import is_built_in, members, refuse_incomplete
+from softafm.checks.refusals import show
 from softafm.checks.validate import check_positive
+from softafm.compiled.formulas import find_first_line
+from softafm.instrument.cantilever import Cantilever
+
+_WANTED = "a lever such as softafm.instrument.lever.Spring(1)"
+_INSTANT = 1e-9
+"""A step and a creep time to try a lever of the user's with, s."""
 
 
 class Lever(Protocol):
@@ -104,9 +111,74 @@ class Spring:
 
 
 def check_lever(lever: Any) -> None:
-    """Raise ValueError if an object is no lever; the line says what it lacks."""
-    needed = "stiffness", "compiled_response", "at_start", "falling"
-    refuse_incomplete("lever", lever, needed, "a lever such as softafm.instrument.lever.Spring(1)")
+    """Raise ValueError if an object is no lever, or its functions do not do what is asked of them.
+
+    Those of a class of the user's own are tried once.
+    """
+    if isinstance(lever, Cantilever):
+        raise ValueError(
+            f"lever = {lever!r}: goes into modes; for a solver it must be "
+            f"softafm.instrument.lever.Spring({lever.stiffness:g})"
+        )
+    refuse_incomplete("lever", lever, members(Lever), _WANTED)
+    if is_built_in(lever):
+        return
+    state = lever.at_start()
+    _check_array("lever.at_start()", state)
+    _check_response("lever", lever, state)
+    try:
+        falling = lever.falling(_INSTANT)
+    except TypeError as error:
+        raise ValueError(f"lever.falling: must take a creep time, s: {error}") from None
+    refuse_incomplete("lever.falling(...)", falling, members(Lever), _WANTED)
+    if type(falling) is not type(lever):
+        _check_response("lever.falling(...)", falling, state)
+
+
+def _check_array(name: str, value: Any) -> None:
+    plain = isinstance(value, np.ndarray) and value.dtype == float and value.ndim == 1
+    if not (plain and value.flags.c_contiguous and np.isfinite(value).all()):
+        shown = " ".join(show(value).split())
+        raise ValueError(f"{name} = {shown}: must be an array of finite floats, of shape (n,)")
+
+
+def _check_response(of: str, lever: Any, state: np.ndarray) -> None:
+    """Try both compiled functions in one short step without deflection and force."""
+    from softafm.compiled.functions import ACCEPTANCE, RESPONSE, CompiledFunction
+
+    if lever.stiffness != inf:
+        check_positive(f"{of}.stiffness", lever.stiffness, "N/m")
+    found, name = lever.compiled_response, f"{of}.compiled_response"
+    if not (isinstance(found, tuple) and len(found) == 3):
+        raise ValueError(
+            f"{name} = {show(found)}: must be a property that returns three things: two functions "
+            "decorated with compile_when_used, for RESPONSE and ACCEPTANCE, and an array"
+        )
+    for i, (wanted, signature) in enumerate((("RESPONSE", RESPONSE), ("ACCEPTANCE", ACCEPTANCE))):
+        if not (isinstance(found[i], CompiledFunction) and found[i].signature() == signature):
+            raise ValueError(
+                f"{name}[{i}] = {found[i]!r}: must be a function decorated with "
+                f"softafm.compiled.functions.compile_when_used({wanted})"
+            )
+    _check_array(f"{name}[2]", found[2])
+    results = []
+    for i, function in enumerate(found[:2]):
+        kept = state.copy()
+        try:
+            results.append(function(_INSTANT, _INSTANT, 0.0, 0.0, found[2], kept))
+        except Exception as error:  # numba raises many types
+            raise ValueError(
+                f"{name}[{i}]: must be a function that numba compiles: {find_first_line(error)}"
+            ) from error
+        if i == 0 and not np.array_equal(kept, state):
+            raise ValueError(f"{name}[0]: changes the state: only the second function may")
+    _check_array(f"the state after {name}[1]", kept)
+    rest, stiffness = results[0]
+    if not (isfinite(rest) and stiffness > 0):
+        raise ValueError(
+            f"{name}[0] = ({rest:g} m, {stiffness:g} N/m) in a step of {_INSTANT:g} s without "
+            "deflection and force: must be a finite rest, then a stiffness above 0"
+        )
 
 
 def make_lever(stiffness: float | None) -> Rigid | Spring:

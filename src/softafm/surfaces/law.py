@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from softafm.compiled.formulas import Term
+from softafm.surfaces.check import check_repulsion
 
 _GAPS = np.geomspace(1e-12, 1e-6, 6001)
 _OUTWARDS = np.geomspace(1e-3, 1e2, 4001)
@@ -147,12 +148,7 @@ class SurfaceLaw(ABC):
     @cached_property
     def _scanned(self) -> np.ndarray:
         pressure = self.pressure(_GAPS)
-        if not pressure[0] > 0:
-            raise ValueError(
-                f"surface law '{self.kind}': its pressure at a gap of {_GAPS[0]:g} m is "
-                f"{pressure[0]:.3g} Pa; it must repel (above 0) when the surfaces come close, so "
-                "add a repulsion"
-            )
+        check_repulsion(self.kind, _GAPS[0], pressure[0])
         return pressure
 
     @cached_property

@@ -2,22 +2,14 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from math import log
 from typing import Any, ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from softafm.compiled.formulas import Term, bound_parameters, find_first_line
+from softafm.compiled.formulas import Term, bound_parameters
+from softafm.tips.check import check_profile
 from softafm.tips.tip import Tip
-
-_RADII = np.geomspace(1e-13, 1e-2, 1101)
-_NOISE = 1e-15
-"""Heights that differ by less, m, count as equal: it is how cancellation looks near the apex."""
-_NEAR, _NEARER = 1e-11, 1e-13
-_CORNER = 1e-5
-"""A slope at the innermost radius below which there is no corner."""
-_LEAST_EXPONENT = 1.9
 
 
 @dataclass(frozen=True, init=False)
@@ -50,7 +42,11 @@ class CustomTip(Tip):
         object.__setattr__(self, "function", function)
         bound = bound_parameters(function, "radius", parameters)
         object.__setattr__(self, "parameters", bound)
-        self._refuse_what_is_no_profile()
+        check_profile(
+            f"function = {getattr(function, '__name__', 'function')}",
+            self.profile,
+            "must be one that numba compiles and that has a value at any radius",
+        )
 
     @property
     def term(self) -> Term:
@@ -64,38 +60,3 @@ class CustomTip(Tip):
         height = np.empty(r.size)
         compiled(np.ascontiguousarray(r).ravel(), values, height, r.size)
         return height.reshape(r.shape)[()]
-
-    def _refuse_what_is_no_profile(self) -> None:
-        name = getattr(self.function, "__name__", "function")
-        try:
-            height = self.profile(np.append(0.0, _RADII))
-        except Exception as error:  # numba raises many types
-            raise ValueError(
-                f"function = {name}: must be one that numba compiles and that has a value at any "
-                f"radius: {find_first_line(error)}"
-            ) from error
-        r = np.append(0.0, _RADII)
-        for i in np.flatnonzero(~np.isfinite(height)):
-            raise ValueError(f"function = {name}: {height[i]:g} m at {r[i]:g} m: must be finite")
-        if abs(height[0]) > _NOISE:
-            raise ValueError(f"function = {name}: {height[0]:g} m at radius 0: must be 0, the apex")
-        highest = np.maximum.accumulate(height)
-        for i in np.flatnonzero(height < highest * (1 - 1e-12) - _NOISE):
-            j = int(np.argmax(height[:i]))
-            raise ValueError(
-                f"function = {name}: {height[i]:g} m at {r[i]:g} m, but {height[j]:g} m at "
-                f"{r[j]:g} m: must never fall"
-            )
-        if not highest[-1] > highest[-101] * (1 + 1e-9) + _NOISE:
-            raise ValueError(
-                f"function = {name}: {height[-1]:g} m from {r[-101]:g} m to {r[-1]:g} m: must go "
-                "on rising"
-            )
-        near, nearer = self.profile(np.array([_NEAR, _NEARER])) / (_NEAR, _NEARER)
-        if nearer > _CORNER:
-            exponent = 1 + log(near / nearer) / log(_NEAR / _NEARER)
-            if exponent < _LEAST_EXPONENT:
-                raise ValueError(
-                    f"function = {name}: rises as radius^{exponent:.2g} at radius 0: must rise as "
-                    "radius^2 or slower, with neither a corner nor an infinitely sharp apex"
-                )
