@@ -278,6 +278,17 @@ def test_fields_of_a_dataclass_are_written_by_their_types(field, written, value)
         schema.build_kind("made", {"field": {}}, schema.table_of(made), folder=Path())
 
 
+def test_fields_of_a_solver_have_units_too():
+    namespace = {"kind": "own", "adaptive": True}
+    field = ("reach", Annotated[float, LENGTH] | None, None)
+    table = schema._make_solver_table(make_dataclass("Own", [field], namespace=namespace))
+    assert schema.build_kind("solver", {"reach": "3 nm"}, table, folder=Path()).reach == 3e-9
+    with pytest.raises(
+        ConfigError, match=r"^solver\.reach = 3e-09: must be a length with its unit"
+    ):
+        schema.build_kind("solver", {"reach": 3e-9}, table, folder=Path())
+
+
 def test_a_dimension_needs_a_meaning():
     over = replace(LOADS, axes=modes.Axes(("place",)))
     with modes_restored(), pytest.raises(ValueError, match="the dimension place must be among the"):
