@@ -96,6 +96,11 @@ def test_a_trigger_of_a_motion_of_ones_own_turns_it():
     assert float(own.force_max) == pytest.approx(2e-9, rel=1e-2)
 
 
+def test_breaks_may_be_a_list():
+    for motion in (Copied(TRIGGERED, breaks=list(RAMP.breaks)), Copied(RAMP, breaks=[0.0, 6e-6])):
+        check_motion(motion)
+
+
 def test_a_steady_motion_ends_where_it_began():
     falling = sa.Triangle(10e-9, -2e-9, 1e-3).breaks[:2]
     down = Copied(sa.Triangle(10e-9, -2e-9, 1e-3), breaks=falling, steady=True)

@@ -164,7 +164,7 @@ def _check_repetition(motion: Any) -> None:
     periods = getattr(motion, "periods", 1)
     if not (_is_number(periods) and periods >= 1 and periods == int(periods)):
         _refuse(motion, "periods", periods, "a whole number, at least 1")
-    first, last = motion.height(motion.breaks[[0, -1]])
+    first, last = motion.height(np.asarray(motion.breaks)[[0, -1]])
     span = float(np.ptp(motion.height(_choose_times(motion))))
     if is_steady(motion) and abs(last - first) > _SAME_HEIGHT * span + 1e-15:
         must = f"False, as it begins at {first:g} m and ends at {last:g} m"
@@ -195,7 +195,7 @@ def _check_turned(motion: Any, time: float, turned: Any) -> None:
     if type(turned) not in _KNOWN_TO_AGREE:
         _check_path(turned)
     start = motion.breaks[0]
-    if np.abs(turned.breaks[:2] - [start, time]).max() > _SAME_TIME * (time - start):
+    if np.abs(np.subtract(turned.breaks[:2], [start, time])).max() > _SAME_TIME * (time - start):
         must = f"[{start:g} {time:g}] s at first, as it turns there"
         _refuse(motion, "breaks", turned.breaks, must)
     at = start + (time - start) * _PROBES

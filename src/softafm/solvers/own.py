@@ -93,7 +93,7 @@ class _Examination:
         """Refuse a motion that is not that asked for, or turned by its force."""
         done, time, force = self.history.motion, self.history.time, self.history.force
         refuse_incomplete("history.motion", done, ("breaks", "height"), "the motion as carried out")
-        start, end = done.breaks[[0, -1]]
+        start, end = done.breaks[0], done.breaks[-1]
         slack = _SAME * (end - start)
         if abs(time[0] - start) > slack or abs(time[-1] - end) > slack:
             ends = f"from {start:g} to {end:g} s, as history.motion does"
@@ -106,7 +106,7 @@ class _Examination:
                 must = f"the motion turned by its setpoint_force, reached at {time[first]:g} s"
                 self._refuse("motion", done, must)
         turned = trigger is not None and find_setpoint(done) is None
-        if not turned and np.abs(done.breaks[[0, -1]] - asked.breaks[[0, -1]]).max() > slack:
+        if not turned and max(abs(start - asked.breaks[0]), abs(end - asked.breaks[-1])) > slack:
             ends = f"that asked for, from {asked.breaks[0]:g} to {asked.breaks[-1]:g} s"
             self._refuse("motion", done, ends)
 
