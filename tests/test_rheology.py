@@ -459,3 +459,9 @@ def test_figures_of_all_samples(sample, tmp_path):
         "loss modulus E″",
     ]
     figure.savefig(tmp_path / "figure.png", dpi=30)
+
+
+@pytest.mark.parametrize("exponent", [2e-41, 1e-6, 0.0099])
+def test_a_fractional_solid_that_hardly_creeps_is_refused_before_it_takes_all_memory(exponent):
+    with pytest.raises(ValueError, match=r"^exponent = .*: must be at least 0\.01; .* Elastic"):
+        FractionalStandardLinearSolid(1e9, 1e6, 1e-3, exponent, (1e-6, 1.0), 0.5)

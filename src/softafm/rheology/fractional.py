@@ -11,6 +11,9 @@ from softafm.rheology.lists import check_window
 from softafm.rheology.represented import Represented, check_exponent
 from softafm.rheology.series import Response, check_error
 
+_LEAST_EXPONENT = 0.01
+"""The exact creep is an integral over a width that grows as the inverse of the exponent."""
+
 
 @dataclass(frozen=True)
 class FractionalStandardLinearSolid(Represented):
@@ -28,7 +31,7 @@ class FractionalStandardLinearSolid(Represented):
     creep_time
         Creep (retardation) time τ, s.
     exponent
-        Exponent a, above 0 and below 1; it would be a standard linear solid at 1.
+        Exponent a, 0.01 or more and below 1; it would be a standard linear solid at 1.
     window
         Shortest and longest time of the experiment, s.
     poisson
@@ -63,6 +66,11 @@ class FractionalStandardLinearSolid(Represented):
         object.__setattr__(self, "E_inf", check_positive("E_inf", self.E_inf, "Pa"))
         object.__setattr__(self, "creep_time", check_positive("creep_time", self.creep_time, "s"))
         object.__setattr__(self, "exponent", check_exponent(self.exponent))
+        if self.exponent < _LEAST_EXPONENT:
+            raise ValueError(
+                f"exponent = {self.exponent:g}: must be at least {_LEAST_EXPONENT:g}; below, the "
+                "transition is spread over hundreds of decades and the sample as good as Elastic"
+            )
         object.__setattr__(self, "window", check_window(self.window))
         object.__setattr__(self, "poisson", check_poisson_ratio(self.poisson))
         object.__setattr__(self, "error", check_error(self.error))
