@@ -230,6 +230,7 @@ def test_a_trigger_works_without_a_lever():
 class Repelling(sa.LennardJones):
     """A law that calls its gaps of repulsion allowed, so that a ramp may start there."""
 
+    kind = "repelling"
     equilibrium_gap = 0.1e-9
 
 
