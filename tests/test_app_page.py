@@ -161,3 +161,32 @@ def test_results_of_runs_are_drawn_in_the_theme_that_was_chosen():
         assert row["words"].startswith("done in ")
         assert row["id"] == page._list.state["selected"]
         page.close()
+
+
+class Looking:
+    """The clock that lets the page look after its runs."""
+
+    stopped = False
+
+    def stop(self):
+        self.stopped = True
+
+
+def test_a_run_that_ends_while_the_page_is_brought_up_to_date_is_shown_at_the_next_look(
+    page, monkeypatch
+):
+    page._looking = looking = Looking()
+    page.answer({"run": True})
+    (entry,) = page.session.entries
+
+    def end_meanwhile():
+        entry.job.cancel()
+
+    monkeypatch.setattr(page, "_draw", end_meanwhile)
+    page.answer({})
+    assert entry.over
+    assert page._list.state["runs"][0]["state"] == "waiting"
+    assert not looking.stopped
+    page.answer({})
+    assert page._list.state["runs"][0]["state"] == "cancelled"
+    assert looking.stopped

@@ -242,6 +242,8 @@ class Page(pn.viewable.Viewer):
 
     def _refresh(self) -> None:
         """Bring bar, list and tabs up to date."""
+        # Asked first: what ends from here on is not shown yet, and wants another look.
+        busy = self._busy
         self._take_file()
         self.form.look()
         self._bar.state = self._bar_state()
@@ -250,7 +252,7 @@ class Page(pn.viewable.Viewer):
             "selected": self._selected,
         }
         self._draw()
-        if self._looking is not None and not self._busy:
+        if self._looking is not None and not busy:
             self._looking.stop()
             self._looking = None
 
