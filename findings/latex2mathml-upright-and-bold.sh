@@ -26,11 +26,9 @@ from xml.etree import ElementTree
 
 from latex2mathml.converter import convert
 
-SPACE = "{http://www.w3.org/1998/Math/MathML}"
-
 
 def letters(latex, tag="mi"):
-    return list(ElementTree.fromstring(convert(latex)).iter(f"{SPACE}{tag}"))
+    return ElementTree.fromstring(convert(latex)).findall(f".//{{*}}{tag}")
 
 
 (upright,) = letters(r"\mathrm{d}")
