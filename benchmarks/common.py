@@ -97,7 +97,7 @@ def worst(found: dict[str, float]) -> float:
     return max(map(abs, found.values()))
 
 
-def told(found: dict[str, float]) -> str:
+def describe_worst(found: dict[str, float]) -> str:
     """The largest of errors by name, as text."""
     name, error = max(found.items(), key=lambda pair: abs(pair[1]))
     return f"{error:+.3f} % {name}"

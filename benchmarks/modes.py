@@ -40,7 +40,7 @@ def spectroscopy(tolerance):
             continue
         result, seconds = common.timed(lambda case=case: common.run(case, tolerance))
         found = common.errors(case, result, common.expected(case))
-        yield name, seconds, f"{result.attrs['solver_steps']} steps", common.told(found)
+        yield name, seconds, f"{result.attrs['solver_steps']} steps", common.describe_worst(found)
 
 
 def steady_tap(tolerance):
@@ -52,7 +52,7 @@ def steady_tap(tolerance):
     many = sa.tapping_cycle(*tap, cycles=600, tolerance=tolerance)
     found = common.of_its_value(result, many, ("virial", "viscous_loss", "force_max"))
     cycles = f"{int(result['cycles_run'])} cycles"
-    yield "steady tap, creep time 100 periods", seconds, cycles, common.told(found)
+    yield "steady tap, creep time 100 periods", seconds, cycles, common.describe_worst(found)
 
 
 def polystyrene():
@@ -95,7 +95,8 @@ def approach(tolerance):
     """The curve of Fig. 9: its time with 31 ratios, its errors at the ratios of the reference."""
     result, seconds = common.timed(lambda: approach_curve(RATIOS, tolerance))
     errors, off, wrong = approach_misses(tolerance)
-    notes = f"{common.told(errors)}; Z {1e12 * off:.1f} pm; {wrong} solutions missing or wrong"
+    worst = common.describe_worst(errors)
+    notes = f"{worst}; Z {1e12 * off:.1f} pm; {wrong} solutions missing or wrong"
     yield "approach curve, 31 ratios", seconds, f"{result.attrs['solver_taps']} taps", notes
 
 

@@ -102,7 +102,8 @@ def approach_row() -> Row:
     """The approach curve on polystyrene."""
     result, seconds = common.timed(lambda: modes.approach_curve(modes.RATIOS, 1e-2))
     errors, off, wrong = modes.approach_misses(1e-2)
-    accuracy = f"{wrong} solutions missing or wrong, Z {1e12 * off:.1f} pm, {common.told(errors)}"
+    worst = common.describe_worst(errors)
+    accuracy = f"{wrong} solutions missing or wrong, Z {1e12 * off:.1f} pm, {worst}"
     work = f"PS approach curve, 31 ratios, {result.attrs['solver_taps']} taps"
     return Row(work, common.clock(seconds), accuracy, "0.3 s", seconds <= 0.3 and wrong == 0)
 
@@ -194,7 +195,7 @@ def tabor_rows() -> Iterator[Row]:
         found = common.errors(cases[name], result, common.expected(cases[name]))
         good = seconds <= target and common.worst(found) <= 1 if target else None
         wanted = f"{target:g} s" if target else ""
-        yield Row(name, common.clock(seconds), common.told(found), wanted, good)
+        yield Row(name, common.clock(seconds), common.describe_worst(found), wanted, good)
     contact, ramp = common.soft_contact(100)
     started = perf_counter()
     result = sa.force_distance(contact, ramp)
@@ -202,7 +203,7 @@ def tabor_rows() -> Iterator[Row]:
     finer = sa.force_distance(contact, ramp, tolerance=3e-3)
     names = ("force_max", "force_min", "loop_energy")
     found = common.of_its_value(result, finer, names)
-    accuracy = f"{common.told(found)}, against tolerance 3e-3"
+    accuracy = f"{common.describe_worst(found)}, against tolerance 3e-3"
     good = seconds <= 5 and common.worst(found) <= 1
     yield Row("soft Tabor 100, E0/E_inf = 20", common.clock(seconds), accuracy, "5 s", good)
     started = perf_counter()
