@@ -14,7 +14,7 @@ _TERMINAL_CODE = re.compile(r"\x1b\[[0-9;]*m")
 
 
 class Shape(NamedTuple):
-    """What of a term decides how it is compiled: its function and its number of parameters.
+    """The part of a term that determines its compiled code: function and number of parameters.
 
     ``function(x, a, b, ...)`` takes so many ``parameters`` one by one, or with None all of them as
     one array.
