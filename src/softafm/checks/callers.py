@@ -1,4 +1,4 @@
-"""Warnings on behalf of whoever called softafm, however deep inside they arise."""
+"""Warnings on behalf of the code that called softafm, however deep inside they arise."""
 
 import sys
 import warnings

@@ -27,7 +27,7 @@ _OPTIONS = (
     "BOUNDSCHECK", "CPU_FEATURES", "CPU_NAME", "DEBUGINFO_DEFAULT", "ENABLE_AVX", "LOOP_VECTORIZE",
     "OPT", "SLP_VECTORIZE",
 )  # fmt: skip
-"""What of numba's configuration decides which code it makes."""
+"""The settings of numba that change the code it makes."""
 _BUILD = re.compile("[0-9a-f]{64}")
 _MAGIC = b"softafm compiled code 1\n"
 _UNUSED = 30 * 24 * 3600.0
