@@ -75,6 +75,7 @@ def _reach_end(run: "Run", creep_time: float, duration: float) -> bool:
     """Step through the fictitious time from 0 to ``duration``; whether its end was reached."""
     surface, clock = run.surface, run.surface.clock
     clock["time"], clock["step"], clock["history"] = 0.0, 1e-3 * creep_time, 1
+    clock["rides"] = 0.0
     outcome = FULL
     while outcome in (FULL, REMESH):
         outcome, records, _ = run._advance(duration)

@@ -130,6 +130,23 @@ def choose_frame(edge, open_frame):
     return max(edge, open_frame - OPENING * edge)
 
 
+@compile_for(float64(float64, CLOCK))
+def foresee_frame(step, clock):
+    """Frame radius where the edge will be after a step that rides with it."""
+    history, edge = int(clock.history), clock.edge
+    if clock.rides < history:
+        ahead = (edge - clock.edge_earlier) * step / clock.taken
+        return edge + min(max(ahead, -FARTHEST_RIDE * edge), FARTHEST_RIDE * edge)
+    before, earliest = clock.frame_earlier, clock.frame_earliest
+    frame = clock.frame
+    if history > 1:
+        frame += step * (clock.frame - before) / clock.taken
+    if history > 2:
+        bend = (clock.frame - before) / clock.taken - (before - earliest) / clock.taken_earlier
+        frame += step * (step + clock.taken) * bend / (clock.taken + clock.taken_earlier)
+    return min(max(frame, (1.0 - FARTHEST_RIDE) * edge), (1.0 + FARTHEST_RIDE) * edge)
+
+
 @compile_for(float64(float64, CLOCK, MESH, CONTROLS))
 def follow_edge(step, clock, mesh, controls):
     """Frame radius for the next step, which rides along with the edge.

@@ -51,6 +51,9 @@ CLOCK_FIELDS = record(
     # How large a second correction of Newton's was for the square of the first; 0 if that is not
     # known, inf if it is no guide.
     "contraction",
+    "rides",  # number of past shapes that Newton's method rode with: frame and edge are one
+    "found",  # radius of the frame that it found, m
+    "stability",  # s of the last shape found so: positive if it is stable, 0 at the fold
 )  # fmt: skip
 """State of a run besides its fields."""
 
@@ -149,7 +152,8 @@ class Controls(NamedTuple):
     equilibrium; all relative to the gap, but ``force`` to the largest force so far.
     ``slack`` is how far the edge moves, in edge spacings, while the frame catches up with it.
     Remeshing is asked for when the coarseness of a record leaves ``finest`` to ``coarsest``.
-    The step in which the force reaches ``trigger``, N, is the last.
+    The step in which the force reaches ``trigger``, N, is the last. A contact whose edge is beyond
+    ``ride_from``, m, is solved together with its edge.
     """
 
     end: float
@@ -168,13 +172,14 @@ class Controls(NamedTuple):
     coarsest: float
     most_tries: float
     trigger: float
+    ride_from: float
 
 
 class Room(NamedTuple):
     """Memory for the compiled loops to work in, for n nodes, f radii beyond and m elements."""
 
     rows: np.ndarray
-    """(12, n + 1)."""
+    """(16, n + 1)."""
     fields: np.ndarray
     """(10 + 4m, n)."""
     hessian: np.ndarray
@@ -209,7 +214,7 @@ def new_clock() -> np.void:
 def new_room(nodes: int, far: int, elements: int) -> Room:
     """Return room for a mesh and a number of elements."""
     return Room(
-        np.empty((12, nodes + 1)),
+        np.empty((16, nodes + 1)),
         np.empty((10 + 4 * elements, nodes)),
         np.empty((nodes + 1, nodes + 1)),
         np.empty((4, far)),

@@ -11,6 +11,7 @@ from softafm.instrument.lever import Lever
 from softafm.instrument.motion import Motion, Turning, bound_speed, count_periods, find_setpoint
 from softafm.solvers.energy.doubts import list_doubts, suggest_longer_range
 from softafm.solvers.energy.fall import creep_down
+from softafm.solvers.energy.landing import land
 from softafm.solvers.energy.layout import (
     DEFORMATION,
     FALL,
@@ -85,6 +86,7 @@ class Run:
             coarsest=0.0,
             most_tries=float(solver.most_steps),
             trigger=np.inf,
+            ride_from=self.surface.ride_from,
         )
         self.target = self.surface.target
         self.records, self.count = np.empty(2 * _CHUNK, RECORD_FIELDS), 0
@@ -196,6 +198,7 @@ class Run:
         """Forget the past shapes: beyond a break of the motion they do not extrapolate."""
         clock = self.surface.clock
         clock["history"] = 1
+        clock["rides"] = min(clock["rides"], 1.0)
         clock["step"] = AFTER_A_BREAK * clock["taken"] or FIRST_STEP * (stop - self.surface.time)
 
     def _advance(self, stop: float) -> tuple[int, np.ndarray, np.ndarray]:
@@ -225,8 +228,12 @@ class Run:
 
     def _settle(self) -> None:
         """Equilibrate at frozen memory, and keep a record of it."""
+        self._note(self.surface.settle())
+
+    def _note(self, record: tuple[float, ...]) -> None:
+        """Keep a record of the surface as it is."""
         records = self._free_records()[:1]
-        records[0] = self.surface.settle()
+        records[0] = record
         self._keep(records, self.surface.fields[DEFORMATION][None])
 
     def _fall(self, stop: float) -> None:
@@ -239,12 +246,15 @@ class Run:
         duration = min(2.0**self.slips * self.controls.shortest_step, stop - start)
         end = stop if duration == stop - start else start + duration
         self.end_of_slip = start + SLIPS_AGAIN * duration
-        creep_down(self, end, duration)
+        touching = edge > surface.ride_from
+        record = land(surface, end, before, touching) if surface.ride_from < np.inf else None
+        if record is None:
+            creep_down(self, end, duration)
         surface.functions.accept_force(
             end, duration, force, force, surface.parameters.lever, surface.lever_state
         )
         clock["time"], clock["step"] = end, 10 * self.controls.shortest_step
-        self._settle()
+        self._settle() if record is None else self._note(record)
         self.falls.append(surface.time)
         if (
             abs(clock["axis_gap"] - gap) > JUMP_OF_GAP * gap

@@ -6,7 +6,7 @@ an equilibrium, and their difference, with the error of the memory, sets the len
 
 from numba import float64, int64, types
 
-from softafm.compiled.dense import multiply, multiply_rows, solve_factorised
+from softafm.compiled.dense import multiply, multiply_rows
 from softafm.compiled.functions import (
     ACCEPTANCE,
     HEIGHT,
@@ -17,8 +17,8 @@ from softafm.compiled.functions import (
     inline,
     pointer_to,
 )
-from softafm.solvers.energy.equilibrium import equilibrate, tip_force
-from softafm.solvers.energy.frame import find_radius, follow_edge
+from softafm.solvers.energy.equilibrium import tip_force
+from softafm.solvers.energy.frame import find_radius, follow_edge, foresee_frame
 from softafm.solvers.energy.layout import (
     BACKGROUND,
     CLOCK,
@@ -50,10 +50,17 @@ from softafm.solvers.energy.memory import (
     dissipated_power,
 )  # fmt: skip
 from softafm.solvers.energy.proposal import choose_step, furnish, propose
+from softafm.solvers.energy.solution import (
+    STABLE,
+    UNKNOWN,
+    UNSTABLE,
+    find_response,
+    solve,
+    solve_riding,
+)
 from softafm.solvers.energy.stiffness import find_stiffness
 from softafm.solvers.energy.tuning import (
     AT_TRIGGER,
-    CLOSEST,
     LEAST_GROWTH,
     LEAST_RETRY,
     MOST_GROWTH,
@@ -64,30 +71,19 @@ from softafm.solvers.energy.tuning import (
 
 
 @inline
-def solve(trial, law, parameters, mesh, controls, clock, work):
-    """Bring surface and lever into equilibrium, with the load; whether a stable shape was near."""
-    iterations = equilibrate(
-        work.u, work.v, trial.frame * trial.compliance, work.standoff, trial.lever, trial.rest,
-        work.rise, mesh, law, parameters.law, CLOSEST * controls.edge_gap, controls.newton,
-        clock, work.hessian, work.newton, work.far,
-    )  # fmt: skip
-    clock.newtons += abs(iterations)
-    if iterations > 0:
-        for i in range(mesh.nodes.size):
-            work.load_new[i] = (work.v[i] - work.u[i]) / trial.compliance
-    return iterations > 0
-
-
-@inline
 def judge(trial, force, parameters, mesh, controls, clock, work):
     """Error of a solved step, in units of the one aimed at."""
     n, elements = mesh.nodes.size, parameters.retardation.size
     u, gap, history = work.u, work.newton[0], trial.history
     error = 0.0
-    for i in range(n):
-        found = u[i] - u[n] + trial.deflection
-        error = max(error, abs(found - work.guess[i]) / (controls.prediction * gap[i]))
-    if history >= 2:
+    if trial.rides > 0:
+        for i in range(n):
+            error = max(error, abs(gap[i] - work.shape[0, i]) / (controls.prediction * gap[i]))
+    else:
+        for i in range(n):
+            found = u[i] - u[n] + trial.deflection
+            error = max(error, abs(found - work.guess[i]) / (controls.prediction * gap[i]))
+    if history >= 2 and elements > 0:
         ratio = clock.taken / trial.step
         curvature = 0.0
         for m in range(elements):
@@ -100,9 +96,8 @@ def judge(trial, force, parameters, mesh, controls, clock, work):
             error = max(error, abs(curvature * bend) / (controls.memory * gap[i]))
         # What an error of the memory does to the surface now, which is much near a fold.
         miss = work.newton[3]
-        multiply(mesh.stiffness, work.scratch, miss[:n])
-        miss[n] = 0.0
-        solve_factorised(work.hessian, miss, n + 1 if trial.lever > 0.0 else n)
+        multiply(mesh.stiffness, work.scratch, work.newton[2, :n])
+        find_response(trial, work.newton[2], mesh, work, miss)
         for i in range(n):
             error = max(error, abs(miss[i] - miss[n]) / (controls.memory * gap[i]))
     past = clock.force, clock.force_earlier, clock.force_earliest
@@ -130,7 +125,12 @@ def accept(trial, force, growth, parameters, mesh, controls, fields, clock, work
         fields[DEFORMATION, i] = work.u[i]
         fields[LOAD_EARLIER, i] = fields[LOAD, i]
         fields[LOAD, i] = work.load_new[i]
-    edge = frame * find_radius(gap, mesh.nodes, controls.edge_gap)
+    if trial.rides > 0:
+        edge = frame
+        clock.rides += 1.0
+    else:
+        edge = frame * find_radius(gap, mesh.nodes, controls.edge_gap)
+        clock.rides = 0.0
     move_clock(clock, trial.step, frame, edge, force, work.u[n])
     clock.step = max(
         trial.step * min(MOST_GROWTH, max(LEAST_GROWTH, growth)), 0.999 * controls.shortest_step
@@ -149,6 +149,13 @@ def accept(trial, force, growth, parameters, mesh, controls, fields, clock, work
         zone = frame * find_radius(gap, mesh.nodes, controls.open_gap) - edge
         record.coarseness = frame * mesh.edge_spacing / max(zone, 1e-9 * frame)
     record.frame, record.jump = frame, 0.0
+
+
+@inline
+def may_ride(clock, controls):
+    """Whether the next step solves for the edge too: 1 if so."""
+    known = clock.history > 1.0 or clock.rides > 0.0
+    return 1 if known and clock.edge > controls.ride_from else 0
 
 
 @compile_for((CLOCK, float64, float64, float64, float64, float64))
@@ -194,7 +201,11 @@ def advance(
         if clock.tries >= controls.most_tries:
             return STUCK, count
         step = choose_step(clock, controls, left)
-        frame = follow_edge(step, clock, mesh, controls)
+        rides = may_ride(clock, controls)
+        if rides > 0:
+            frame = foresee_frame(step, clock)
+        else:
+            frame = follow_edge(step, clock, mesh, controls)
         if frame != tabulated:
             if not find_stiffness(table, frame):
                 clock.wanted = frame
@@ -202,11 +213,21 @@ def advance(
             tabulated = frame
         clock.tries += 1
         trial = propose(
-            step, frame, height, profile, respond, parameters, background, mesh, fields, clock,
-            lever_state, work,
+            step, frame, rides, height, profile, respond, parameters, background, mesh, fields,
+            clock, lever_state, work,
         )  # fmt: skip
-        stable = solve(trial, law, parameters, mesh, controls, clock, work)
-        if not stable:
+        if rides > 0:
+            trial, found = solve_riding(
+                trial, height, profile, law, parameters, background, mesh, table, controls, fields,
+                clock, work,
+            )  # fmt: skip
+            tabulated = trial.frame
+        else:
+            stable = solve(trial, law, parameters, mesh, controls, clock, work)
+            found = STABLE if stable else UNSTABLE
+        if found == UNKNOWN:
+            return TABULATE, count
+        if found == UNSTABLE:
             if step <= shortest:
                 return FALL, count
             clock.step = max(RETRIED * step, 0.999 * shortest)

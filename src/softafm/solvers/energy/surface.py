@@ -37,6 +37,7 @@ from softafm.solvers.energy.tuning import (
     EXTENT,
     FINER_THAN_NEEDED,
     GROWTH,
+    RIDE_FROM,
     SLACK,
     SLOWEST_GROWTH,
     SPACING,
@@ -86,6 +87,8 @@ class Surface:
         finer = min(2.0, max(1.0, slack / 4))
         self.target = SPACING * strictness**0.2 / max(1.0, sharpness) / finer
         self.growth = max(SLOWEST_GROWTH, GROWTH * slack**-0.45) * min(1.0, strictness**0.17)
+        slacker = contact.tabor_softened > SLACK
+        self.ride_from = RIDE_FROM * self.open_frame if slacker else inf
         self.finest_level = max(0, ceil(log2(COARSEST_SPACING / finest_spacing)))
         self.level = self.first_level = self._find_level(0.4 * contact.open_width / self.open_frame)
         self._lay(self._build_mesh(self.level))
@@ -178,6 +181,26 @@ class Surface:
         self.finest_spacing = min(self.finest_spacing, self.mesh.edge_spacing)
         self.finest_used = max(self.finest_used, self.level)
 
+    def open(self) -> None:
+        """Let the surface be as its memory has it, in the frame of a contact yet to come."""
+        self.level = self.first_level
+        mesh, stretch = self._build_mesh(self.level), self.open_frame / self.clock["frame"]
+        self.fields = self._carry(self.fields, mesh, stretch)
+        self._lay(mesh)
+        self.clock["frame"], self.clock["deflection"] = self.open_frame, 0.0
+        self.fields[DEFORMATION] = -self.parameters.compliance[1:] @ self.memory()
+
+    def keep(self) -> tuple[Any, ...]:
+        """Return what ``restore`` needs to undo what happens from now on."""
+        return self.fields, self.clock.copy(), self.level, self.mesh, self.stiffness, self.table
+
+    def restore(self, kept: tuple[Any, ...]) -> None:
+        """Be again as ``kept``."""
+        fields, clock, self.level, self.mesh, self.stiffness, self.table = kept
+        self.fields = fields
+        for name in clock.dtype.names:
+            self.clock[name] = clock[name]
+
     def rewind(self, time: float) -> np.ndarray:
         """Go back to ``time``; return the memory gained since, (elements, n) in Pa·m.
 
@@ -253,10 +276,22 @@ class Surface:
         )  # fmt: skip
         if iterations < 0:
             raise DivergedError(f"no stable surface found at height {h0:g} m")
-        u, clock["deflection"] = unknowns[:-1], unknowns[-1]
+        clock["deflection"] = unknowns[-1]
+        return self.take(unknowns[:-1], v)
+
+    def take(self, u: np.ndarray, v: np.ndarray) -> tuple[float, ...]:
+        """Take a shape in equilibrium on a surface displaced by v, m, and return its record."""
+        mesh, clock = self.mesh, self.clock
+        height_at, profile, law, *_ = self.functions
+        n, frame = mesh.nodes.size, clock["frame"]
+        tip, pressure, scratch = np.empty(n), np.empty(n), np.empty(n)
+        rise, far_work = np.empty(mesh.far.size), np.empty((3, mesh.far.size))
+        raise_tip(profile, self.parameters.tip, mesh, frame, scratch, tip, rise)
+        h0, memory = height_at(self.time, self.parameters.height), self.memory()
+        elements = self.parameters.compliance[1:]
         self.fields[DEFORMATION] = u
-        self.fields[LOAD] = (v - u) / instantaneous
-        gap = base + clock["deflection"] - u
+        self.fields[LOAD] = (v - u) / self.parameters.compliance[0]
+        gap = h0 - self.parameters.law[ORIGIN] + tip + clock["deflection"] - u
         law(gap, self.parameters.law, pressure, scratch, n)
         force = tip_force(pressure, gap, rise, mesh, frame, law, self.parameters.law, far_work)
         edge = frame * find_radius(gap, mesh.nodes, self.edge_gap)
@@ -267,6 +302,7 @@ class Surface:
         clock["edge"], clock["axis_gap"], clock["force"] = edge, gap[0], force
         clock["force_scale"] = max(clock["force_scale"], abs(force))
         clock["history"] = 1
+        clock["rides"] = 0.0
         loss = 2 * np.pi * frame * rates @ np.sum((lag @ mesh.stiffness) * lag, axis=1)
         spacing = frame * mesh.edge_spacing
         coarseness = spacing / max(zone, 1e-9 * frame) if edge else 0.0

@@ -29,6 +29,23 @@ EQUILIBRIUM_ERROR = 1e-3
 """Error of an equilibrium, relative to the gap, at a tolerance of 1e-2: below those of a step, as a
 slack contact follows its edge by the softest of its shapes (``softafm docs performance``)."""
 
+FARTHEST_RIDING_GUESS = 5.0
+"""Largest relative change of a gap in a first iteration that rides with the edge; between 0.7 and 5
+it made no difference."""
+
+LARGEST_LANDING, MOST_LANDING = 0.5, 40
+"""Largest relative change of a gap in an iteration towards a contact guessed from afar, and how many
+of them may be taken."""
+
+RIDING_ERROR = 0.1
+"""Error of an equilibrium that is solved with its edge, in units of the other ones'."""
+
+MOST_REFRAMES = 4
+"""How often memory is carried to the frame that such an equilibrium has found."""
+
+OF_THE_EDGE = 30.0
+"""Weight of the relative change of the frame beside that of the gaps where an iteration ends."""
+
 # The descent in energy, used where no stable shape is near.
 
 LARGEST_DESCENT = 0.4
@@ -59,6 +76,10 @@ DAMPING = 1.5
 """Part of the quadratic's correction that damps it, with the other sign (same test)."""
 
 # The frame that rides on the contact edge.
+
+RIDE_FROM = 0.5
+"""Radius of the edge, in radii of the open contact, beyond which a slack contact is solved together
+with it."""
 
 OPENING = 1.5
 """How much faster a frame closes on a contact that begins than its edge opens."""
