@@ -247,3 +247,67 @@ def solve_general(factor, pivots, x):
         for j in range(i + 1, n):
             total -= factor[i, j] * x[j]
         x[i] = total * factor[i, i]
+
+
+@compile_for(float64(_M, _V, int64))
+def factorise_any(matrix, order, n):
+    """LU in place of a square matrix, rows exchanged for the largest pivot of their scale.
+
+    ``order`` is left with the row taken in each step. Returns the sign of the determinant, 0 if a
+    pivot vanishes.
+    """
+    sign = 1.0
+    for i in range(n):
+        largest = 0.0
+        for j in range(n):
+            largest = max(largest, abs(matrix[i, j]))
+        order[n + i] = 1.0 / largest
+    for k in range(n):
+        best, at = 0.0, k
+        for i in range(k, n):
+            size = abs(matrix[i, k]) * order[n + i]
+            if size > best:
+                best, at = size, i
+        if not best > 0.0:
+            return 0.0
+        order[k] = at
+        if at != k:
+            sign = -sign
+            order[n + at] = order[n + k]
+            above, below = matrix[k, :n], matrix[at, :n]
+            for j in range(n):
+                kept = above[j]
+                above[j] = below[j]
+                below[j] = kept
+        if matrix[k, k] < 0.0:
+            sign = -sign
+        inverse, pivot = 1.0 / matrix[k, k], matrix[k, k + 1 : n]
+        for i in range(k + 1, n):
+            part = matrix[i, k] * inverse
+            matrix[i, k] = part
+            row = matrix[i, k + 1 : n]
+            for j in range(row.size):
+                row[j] -= part * pivot[j]
+    return sign
+
+
+@compile_for((_M, _V, _V, int64))
+def solve_any(factor, order, x, n):
+    """Overwrite ``x`` with the solution of a system that ``factorise_any`` has factorised."""
+    for k in range(n):
+        at = int(order[k])
+        kept = x[k]
+        x[k] = x[at]
+        x[at] = kept
+    for i in range(n):
+        row = factor[i]
+        total = x[i]
+        for j in range(i):
+            total -= row[j] * x[j]
+        x[i] = total
+    for i in range(n - 1, -1, -1):
+        row = factor[i]
+        total = x[i]
+        for j in range(i + 1, n):
+            total -= row[j] * x[j]
+        x[i] = total / row[i]

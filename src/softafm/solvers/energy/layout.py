@@ -173,6 +173,7 @@ class Controls(NamedTuple):
     most_tries: float
     trigger: float
     ride_from: float
+    trace_from: float
 
 
 class Room(NamedTuple):
@@ -188,6 +189,12 @@ class Room(NamedTuple):
     """(4, f)."""
     weights: np.ndarray
     """(m + 1, 5)."""
+    gain: np.ndarray
+    """(n, n)."""
+    system: np.ndarray
+    """(n + 2, n + 2)."""
+    order: np.ndarray
+    """(2, 2n + 4)."""
 
 
 MESH = types.NamedTuple(
@@ -219,4 +226,7 @@ def new_room(nodes: int, far: int, elements: int) -> Room:
         np.empty((nodes + 1, nodes + 1)),
         np.empty((4, far)),
         np.empty((elements + 1, 5)),
+        np.empty((nodes, nodes)),
+        np.empty((nodes + 2, nodes + 2)),
+        np.empty((2, 2 * nodes + 4)),
     )

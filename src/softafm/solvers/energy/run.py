@@ -87,6 +87,7 @@ class Run:
             most_tries=float(solver.most_steps),
             trigger=np.inf,
             ride_from=self.surface.ride_from,
+            trace_from=self.surface.trace_from,
         )
         self.target = self.surface.target
         self.records, self.count = np.empty(2 * _CHUNK, RECORD_FIELDS), 0

@@ -3,9 +3,12 @@
 from softafm.compiled.dense import solve_factorised
 from softafm.compiled.functions import inline
 from softafm.solvers.energy.equilibrium import equilibrate
+from softafm.solvers.energy.layout import LOAD, LOAD_EARLIER, ORIGIN
+from softafm.solvers.energy.memory import NEW
 from softafm.solvers.energy.proposal import Trial, carry_past
 from softafm.solvers.energy.riding import lay_phase, ride
 from softafm.solvers.energy.stiffness import find_stiffness
+from softafm.solvers.energy.tracing import trace
 from softafm.solvers.energy.tuning import CLOSEST, MOST_REFRAMES, RIDING_ERROR
 
 STABLE, UNSTABLE, UNKNOWN = 1, 0, -1
@@ -93,6 +96,38 @@ def solve_riding(
         spring / (frame * frame), trial.rest, trial.history, trial.rides,
     )  # fmt: skip
     return found, outcome
+
+
+@inline
+def solve_tracing(
+    trial, profile, law, parameters, background, mesh, controls, fields, clock, work, room
+):  # fmt: skip
+    """As ``solve_riding``, with a memory that rides too."""
+    n, elements = mesh.nodes.size, parameters.retardation.size
+    onward = trial.step / clock.taken if clock.rides >= 2.0 and trial.history > 1 else 0.0
+    for i in range(n):
+        work.shape[0, i] = work.standoff[i] + work.u[n] - work.u[i]
+        work.past[0, i], work.load_earlier[0, i] = fields[LOAD, i], fields[LOAD_EARLIER, i]
+        work.load_new[i] = fields[LOAD, i] + onward * (fields[LOAD, i] - fields[LOAD_EARLIER, i])
+    spring = trial.lever * trial.frame * trial.frame
+    iterations = trace(
+        trial.step, trial.frame, trial.height - parameters.law[ORIGIN], spring, trial.rest,
+        profile, law, parameters.tip, parameters.law, parameters.compliance,
+        parameters.retardation, work.weights, background, mesh, fields, clock, controls.edge_gap,
+        CLOSEST * controls.edge_gap, RIDING_ERROR * controls.newton, work.u, work.load_new,
+        work.past[1:], work.lags, room,
+    )  # fmt: skip
+    clock.newtons += abs(iterations)
+    for m in range(elements):
+        work.weights[m, NEW] = 0.0
+        for i in range(n):
+            work.past[m + 1, i] += work.lags[m, i]
+    frame = clock.found if iterations > 0 else trial.frame
+    found = Trial(
+        trial.step, frame, trial.height, trial.compliance, trial.deflection,
+        spring / (frame * frame), trial.rest, trial.history, trial.rides,
+    )  # fmt: skip
+    return found, STABLE if iterations > 0 else UNSTABLE
 
 
 @inline

@@ -57,8 +57,10 @@ from softafm.solvers.energy.solution import (
     find_response,
     solve,
     solve_riding,
+    solve_tracing,
 )
 from softafm.solvers.energy.stiffness import find_stiffness
+from softafm.solvers.energy.tracing import answer_shift
 from softafm.solvers.energy.tuning import (
     AT_TRIGGER,
     LEAST_GROWTH,
@@ -70,8 +72,12 @@ from softafm.solvers.energy.tuning import (
 )  # fmt: skip
 
 
+TRACES = 2
+"""How a trial ``rides`` whose memory does, too."""
+
+
 @inline
-def judge(trial, force, parameters, mesh, controls, clock, work):
+def judge(trial, force, parameters, mesh, controls, clock, work, room):
     """Error of a solved step, in units of the one aimed at."""
     n, elements = mesh.nodes.size, parameters.retardation.size
     u, gap, history = work.u, work.newton[0], trial.history
@@ -91,13 +97,20 @@ def judge(trial, force, parameters, mesh, controls, clock, work):
         for i in range(n):
             bend = (work.load_new[i] + work.load_earlier[0, i] / ratio) / (1.0 + ratio)
             bend -= work.past[0, i] / ratio
-            work.scratch[i] = curvature * bend / (trial.frame * trial.compliance)
+            work.scratch[i] = curvature * bend
             # What is lost in a stiff contact stays in the memory, and comes out later.
             error = max(error, abs(curvature * bend) / (controls.memory * gap[i]))
         # What an error of the memory does to the surface now, which is much near a fold.
         miss = work.newton[3]
-        multiply(mesh.stiffness, work.scratch, work.newton[2, :n])
-        find_response(trial, work.newton[2], mesh, work, miss)
+        if trial.rides == TRACES:
+            bends = 1 if trial.lever > 0.0 else 0
+            answer_shift(work.scratch, parameters.compliance[0], bends, mesh, miss, room)
+            miss[n] = 0.0
+        else:
+            for i in range(n):
+                work.scratch[i] /= trial.frame * trial.compliance
+            multiply(mesh.stiffness, work.scratch, work.newton[2, :n])
+            find_response(trial, work.newton[2], mesh, work, miss)
         for i in range(n):
             error = max(error, abs(miss[i] - miss[n]) / (controls.memory * gap[i]))
     past = clock.force, clock.force_earlier, clock.force_earliest
@@ -204,6 +217,9 @@ def advance(
         rides = may_ride(clock, controls)
         if rides > 0:
             frame = foresee_frame(step, clock)
+            moved = abs(frame - clock.frame) / (mesh.edge_spacing * frame)
+            if parameters.retardation.size > 0 and clock.rides > 0.0 and moved > controls.trace_from:
+                rides = TRACES
         else:
             frame = follow_edge(step, clock, mesh, controls)
         if frame != tabulated:
@@ -216,7 +232,13 @@ def advance(
             step, frame, rides, height, profile, respond, parameters, background, mesh, fields,
             clock, lever_state, work,
         )  # fmt: skip
-        if rides > 0:
+        if rides == TRACES:
+            trial, found = solve_tracing(
+                trial, profile, law, parameters, background, mesh, controls, fields, clock, work,
+                room,
+            )  # fmt: skip
+            tabulated = -1.0
+        elif rides > 0:
             trial, found = solve_riding(
                 trial, height, profile, law, parameters, background, mesh, table, controls, fields,
                 clock, work,
@@ -236,7 +258,7 @@ def advance(
             work.newton[1, :n], work.newton[0, :n], work.rise, mesh, trial.frame, law,
             parameters.law, work.far,
         )  # fmt: skip
-        error = judge(trial, force, parameters, mesh, controls, clock, work)
+        error = judge(trial, force, parameters, mesh, controls, clock, work, room)
         growth = SAFETY * max(error, 1e-6) ** (-1.0 / trial.history)
         if error > REFUSED and step > shortest:
             clock.step = max(step * max(LEAST_RETRY, growth), 0.999 * shortest)

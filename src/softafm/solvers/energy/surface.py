@@ -39,8 +39,9 @@ from softafm.solvers.energy.tuning import (
     GROWTH,
     RIDE_FROM,
     SLACK,
-    SLOWEST_GROWTH,
+    SLACKER,
     SPACING,
+    TRACE_FROM,
 )
 
 _POINTS, _WEIGHTS = np.polynomial.legendre.leggauss(16)
@@ -82,13 +83,11 @@ class Surface:
         self.open_frame = contact.open_radius
         self.accuracy = EQUILIBRIUM_ERROR * strictness
         sharpness = contact.surface.sharpness if contact.adhesive else 1.0
-        tabor = contact.tabor_instantaneous if contact.adhesive else 0.0
-        slack = max(1.0, tabor / SLACK)
-        finer = min(2.0, max(1.0, slack / 4))
-        self.target = SPACING * strictness**0.2 / max(1.0, sharpness) / finer
-        self.growth = max(SLOWEST_GROWTH, GROWTH * slack**-0.45) * min(1.0, strictness**0.17)
-        slacker = contact.tabor_softened > SLACK
-        self.ride_from = RIDE_FROM * self.open_frame if slacker else inf
+        self.target = SPACING * strictness**0.2 / max(1.0, sharpness)
+        self.growth = GROWTH * min(1.0, strictness**0.17)
+        slack = contact.tabor_softened > SLACK
+        self.ride_from = RIDE_FROM * self.open_frame if slack else inf
+        self.trace_from = TRACE_FROM if contact.tabor_softened > SLACKER else inf
         self.finest_level = max(0, ceil(log2(COARSEST_SPACING / finest_spacing)))
         self.level = self.first_level = self._find_level(0.4 * contact.open_width / self.open_frame)
         self._lay(self._build_mesh(self.level))
@@ -100,7 +99,7 @@ class Surface:
         self.fields = np.zeros((MEMORY + elements, self.mesh.nodes.size))
         self.clock = new_clock()
         self.clock["time"] = breaks[0]
-        self.clock["contraction"] = 0.0 if slack < 2 else np.inf
+        self.clock["contraction"] = 0.0 if contact.tabor_instantaneous < 2 * SLACK else np.inf
         first = contact.contact_radius(float(motion.height(breaks[0])))
         self.clock["frame"] = choose_frame(first, self.open_frame)
         self.background = Background(np.empty((0, 0)), 1.0, 1.0, 1.0, 1.0, 0.0, 0.0)

@@ -97,6 +97,21 @@ contacts amplify the change of mesh (``softafm docs performance``, "What did not
 SMALLEST_FRAME = 0.5
 """Smallest frame, in frames of the shape before: interpolation needs the same nodes in both."""
 
+TRACE_FROM = 0.2
+"""Move of the edge in a step, in edge spacings, from which the memory rides with it."""
+
+SLACKER = 12.0
+"""Tabor number of the softened sample from which on that pays: such a step costs 15 others."""
+
+FIRST_PANEL, NEXT_PANEL = 0.8, 2.2
+"""Width of the last panel of a step, in the shortest retardation time, and the ratio of the next."""
+
+FORGOTTEN_TIMES = 25.0
+"""Longest retardation times after which nothing is left of a load, to 1e-11."""
+
+STRAIGHTEST = 0.8
+"""Largest bend of the edge's path in a step, relative to its rise: it must not turn back."""
+
 # The mesh.
 
 EXTENT = 8.0
@@ -109,13 +124,13 @@ COARSEST_SPACING = 0.3
 SPACING = 0.2
 """Node spacing at the edge aimed at, in widths of the cohesive zone, at a tolerance of 1e-2."""
 
-GROWTH, SLOWEST_GROWTH = 0.3, 0.2
-"""Logarithmic growth of the spacing a node away from the edge, and its least one, in slack contacts
-(``softafm docs performance``, "What did not help": 0.45 slips in slack contacts)."""
+GROWTH = 0.3
+"""Logarithmic growth of the spacing a node away from the edge (``softafm docs performance``, "What
+did not help": 0.45 slips in slack contacts)."""
 
 SLACK = 3.0
-"""Fast Tabor number from which on the edge of a contact yields to small errors, such as those of a
-mesh that coarsens rapidly away from it (the same place)."""
+"""Tabor number of the softened sample from which on the edge of a contact yields to small errors, so
+that it is solved for together with the surface."""
 
 FINER_THAN_NEEDED, COARSER_THAN_NEEDED = 0.35, 1.3
 """Spacing, in units of the one aimed at, at which the mesh is exchanged: more than a factor of two
