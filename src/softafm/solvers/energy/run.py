@@ -38,6 +38,7 @@ from softafm.solvers.energy.tuning import (
     MEMORY_ERROR,
     MOST_CYCLES,
     PREDICTION_ERROR,
+    SHORTER,
     SHORTEST_STEP,
     SLIPS_AGAIN,
     STAGNANT,
@@ -69,9 +70,12 @@ class Run:
         self.surface = Surface(contact, motion, lever, self.strictness, solver.finest_spacing)
         gap = self.surface.edge_gap
         fastest = min([gap / motion.top_speed, *self.surface.parameters.retardation])
+        shortest = SHORTEST_STEP
+        if self.surface.trace_from < np.inf:
+            shortest *= SHORTER
         self.controls = Controls(
             end=0.0,
-            shortest_step=SHORTEST_STEP * self.strictness * fastest,
+            shortest_step=shortest * self.strictness * fastest,
             longest_step=0.0,
             top_speed=motion.top_speed,
             open_frame=self.surface.open_frame,

@@ -4,6 +4,8 @@ An implicit predictor-corrector method. The predictor extrapolates shape and for
 an equilibrium, and their difference, with the error of the memory, sets the length of the step.
 """
 
+from math import inf
+
 from numba import float64, int64, types
 
 from softafm.compiled.dense import multiply, multiply_rows
@@ -171,6 +173,14 @@ def may_ride(clock, controls):
     return 1 if known and clock.edge > controls.ride_from else 0
 
 
+@inline
+def may_trace(frame, clock, mesh, controls):
+    """Whether the edge will move so far in a riding step that the memory has to ride, too."""
+    moved = abs(frame - clock.frame) / (mesh.edge_spacing * frame)
+    unknown = clock.history < 2.0 and controls.trace_from < inf
+    return clock.rides > 0.0 and (unknown or moved > controls.trace_from)
+
+
 @compile_for((CLOCK, float64, float64, float64, float64, float64))
 def move_clock(clock, step, frame, edge, force, deflection):
     """Let a step have been taken; its time is for the caller to set."""
@@ -217,8 +227,7 @@ def advance(
         rides = may_ride(clock, controls)
         if rides > 0:
             frame = foresee_frame(step, clock)
-            moved = abs(frame - clock.frame) / (mesh.edge_spacing * frame)
-            if parameters.retardation.size > 0 and clock.rides > 0.0 and moved > controls.trace_from:
+            if parameters.retardation.size > 0 and may_trace(frame, clock, mesh, controls):
                 rides = TRACES
         else:
             frame = follow_edge(step, clock, mesh, controls)

@@ -186,6 +186,9 @@ SHORTEST_STEP = 1e-4
 """Shortest step before a fall, in retardation times or the time in which the tip crosses the gap of
 the contact edge, whichever is less."""
 
+SHORTER = 1e-3
+"""The same for slack contacts, in units of the others': after a jump their edges run fast."""
+
 # Falls.
 
 STIFF_SHARE = 0.2
