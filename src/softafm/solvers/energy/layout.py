@@ -40,6 +40,7 @@ CLOCK_FIELDS = record(
     "taken", "taken_earlier",  # the last two steps, s
     "frame", "frame_earlier", "frame_earliest",  # radii of the frames of the last three shapes, m
     "edge", "edge_earlier",  # radius of the contact edge, m
+    "zone",  # width of the cohesive zone at the edge, m, 0 out of contact
     "axis_gap",  # gap on the axis, m
     "force", "force_earlier", "force_earliest",  # N
     "force_scale",  # the largest force so far, N
@@ -147,7 +148,8 @@ class Controls(NamedTuple):
 
     ``prediction``, ``memory`` and ``force`` are the errors allowed per step, ``newton`` that of an
     equilibrium; all relative to the gap, but ``force`` to the largest force so far.
-    ``slack`` is how far the edge moves, in edge spacings, while the frame catches up with it.
+    ``slack`` is how far the edge moves, in edge spacings, while the frame catches up with it; the
+    frame stays behind an edge where it is that its nodes lie closer than ``held`` times the zone.
     Remeshing is asked for when the coarseness of a record leaves ``finest`` to ``coarsest``.
     The step in which the force reaches ``trigger``, N, is the last.
     """
@@ -164,6 +166,7 @@ class Controls(NamedTuple):
     force: float
     newton: float
     slack: float
+    held: float
     finest: float
     coarsest: float
     most_tries: float

@@ -117,10 +117,13 @@ def find_extrapolation_weights(history, step, last, before, weights):
 
 @compile_for((float64, float64, int64, MATRIX, CLOCK, MESH, VECTOR, VECTOR, MATRIX, MATRIX))
 def predict(frame, step, history, fields, clock, mesh, weights, guess, work, shape):
-    """Extrapolate the last ``history`` shapes to the new frame, as seen riding on the edge."""
+    """Extrapolate the last ``history`` shapes to the new frame, as seen riding on the edge.
+
+    From a frame that stays behind a receding edge they are seen at rest.
+    """
     n = mesh.nodes.size
     speed = 0.0
-    if history > 1:
+    if history > 1 and not (frame == clock.frame and clock.edge < clock.edge_earlier):
         speed = (clock.edge - clock.edge_earlier) / clock.taken
     frames = (clock.frame, clock.frame_earlier, clock.frame_earliest)
     ago = (step, step + clock.taken, step + clock.taken + clock.taken_earlier)

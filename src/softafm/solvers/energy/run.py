@@ -29,6 +29,7 @@ from softafm.solvers.energy.tuning import (
     AFTER_A_BREAK,
     FEWEST_STEPS,
     FINEST_TARGET,
+    FIRST_PART_OF_GAP,
     FIRST_STEP,
     FORCE_ERROR,
     JUMP_OF_EDGE,
@@ -81,6 +82,7 @@ class Run:
             force=FORCE_ERROR * self.strictness,
             newton=self.surface.accuracy,
             slack=LAG,
+            held=0.0,
             finest=0.0,
             coarsest=0.0,
             most_tries=float(solver.most_steps),
@@ -197,12 +199,19 @@ class Run:
         clock = self.surface.clock
         clock["history"] = 1
         clock["step"] = AFTER_A_BREAK * clock["taken"] or FIRST_STEP * (stop - self.surface.time)
+        speed = self._top_speed(stop)
+        if clock["edge"] > 0 and speed > 0:
+            # A first step has no past to tell the errors of its memory by.
+            part = FIRST_PART_OF_GAP * self.strictness**0.5
+            clock["step"] = min(clock["step"], part * self.surface.edge_gap / speed)
 
     def _advance(self, stop: float) -> tuple[int, np.ndarray, np.ndarray]:
         """Call the compiled loop once; return its outcome, records and shapes."""
         surface = self.surface
         finest, coarsest = surface.coarseness_allowed
-        controls = self.controls._replace(end=float(stop), finest=finest, coarsest=coarsest)
+        controls = self.controls._replace(
+            end=float(stop), finest=finest, coarsest=coarsest, held=surface.spacing_held
+        )
         records = self._free_records()
         shapes = np.empty((0 if self.shapes is None else _CHUNK, surface.mesh.nodes.size))
         outcome, count = advance(

@@ -144,10 +144,10 @@ def accept(trial, force, growth, parameters, mesh, controls, fields, clock, work
         frame, parameters.compliance, parameters.retardation, work.lags, work.strained
     )
     # The cohesive zone as it is now: where the gap opens outside the edge.
-    record.coarseness = 0.0
+    clock.zone, record.coarseness = 0.0, 0.0
     if edge > 0.0:
-        zone = frame * find_radius(gap, mesh.nodes, controls.open_gap) - edge
-        record.coarseness = frame * mesh.edge_spacing / max(zone, 1e-9 * frame)
+        clock.zone = frame * find_radius(gap, mesh.nodes, controls.open_gap) - edge
+        record.coarseness = frame * mesh.edge_spacing / max(clock.zone, 1e-9 * frame)
     record.frame, record.jump = frame, 0.0
 
 
