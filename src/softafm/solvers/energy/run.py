@@ -10,7 +10,7 @@ from softafm.errors import DivergedError
 from softafm.instrument.lever import Lever
 from softafm.instrument.motion import Motion, Turning, bound_speed, count_periods, find_setpoint
 from softafm.solvers.energy.doubts import list_doubts, suggest_longer_range
-from softafm.solvers.energy.fall import creep_down
+from softafm.solvers.energy.fall import creep_down, is_jump
 from softafm.solvers.energy.layout import (
     DEFORMATION,
     FALL,
@@ -32,8 +32,6 @@ from softafm.solvers.energy.tuning import (
     FIRST_PART_OF_GAP,
     FIRST_STEP,
     FORCE_ERROR,
-    JUMP_OF_EDGE,
-    JUMP_OF_GAP,
     LAG,
     MEMORY_ERROR,
     MOST_CYCLES,
@@ -97,6 +95,8 @@ class Run:
         # How well a memory can be found is limited by the errors of a cycle.
         self.steadiness = STEADY * self.strictness**0.5
         self.falls: list[float] = []
+        self.jumps: list[float] = []
+        self.gained = 0.0
 
     def steps(self) -> Iterator[float]:
         """Run, yielding the fraction of the motion done at every return of the compiled loop."""
@@ -152,6 +152,8 @@ class Run:
         for self.cycle in range(1, MOST_CYCLES + 1):
             self.count = 0
             self.falls.clear()
+            self.jumps.clear()
+            self.gained = 0.0
             if self.shapes is not None:
                 self.shapes.clear()
             yield from self.steps()
@@ -255,14 +257,20 @@ class Run:
         clock["time"], clock["step"] = end, 10 * self.controls.shortest_step
         self._settle()
         self.falls.append(surface.time)
-        if (
-            abs(clock["axis_gap"] - gap) > JUMP_OF_GAP * gap
-            or abs(clock["edge"] - edge) > JUMP_OF_EDGE * edge
-        ):
-            self.records[self.count - 1]["jump"] = before - surface.energy()
+        if is_jump(clock, gap, edge):
+            self._note_jump(before - surface.energy())
         else:
             # No fall but a slip: the edge is caught by nodes too far apart for a contact so slack.
             surface.target = max(surface.target / 2, FINEST_TARGET)
+
+    def _note_jump(self, released: float) -> None:
+        """Note a jump to the state just kept, by the energy that it ``released``, J.
+
+        A fall cannot gain energy: what it seems to is an error of the two shapes.
+        """
+        self.jumps.append(self.surface.time)
+        self.records[self.count - 1]["jump"] = max(released, 0.0)
+        self.gained -= min(released, 0.0)
 
     def _keep(self, records: np.ndarray, shapes: np.ndarray) -> None:
         """Keep the records just filled, shapes, and the worst coarseness of the finest mesh."""
@@ -280,7 +288,8 @@ class Run:
         """Collect what was recorded; ``seconds`` is the time the run took."""
         surface = self.surface
         records = self.records[: self.count]
-        time, jumped = records["time"], records["jump"] != 0
+        time = records["time"]
+        jumped = np.isin(time, self.jumps)
         breaks = np.flatnonzero(np.isin(time, self.breaks[1:-1]))
         fallen = np.flatnonzero(np.isin(time, self.falls))
         cuts = sorted([(i, i + 1) for i in breaks] + [(i, i) for i in fallen])

@@ -303,7 +303,10 @@ class Surface:
         near = frame**2 * mesh.masses @ density(frame * mesh.nodes, self.fields[DEFORMATION])
         end = frame * mesh.nodes[-1]
         r = 2 * end / (1 + _POINTS)
-        beyond = np.sum(_WEIGHTS * density(r, 0.0) * r**3 / (2 * end))
+        # There the surface is as high as at the last node, as for the force: in a wide dent the tip
+        # would be inside one that is flat.
+        level = self.fields[DEFORMATION][-1]
+        beyond = np.sum(_WEIGHTS * density(r, level) * r**3 / (2 * end))
         bending = 0.5 * self.lever.stiffness * deflection**2 if self.bends else 0.0
         return float(elastic + bending + 2 * np.pi * (near + beyond))
 

@@ -210,3 +210,6 @@ SLACKEST = 18.0
 SHARPEST = 3.2
 """Sharpness of a law beyond which an edge may catch on the nodes (``benchmarks/every_contact.py``:
 Dugdale's law with less smoothing than 0.07 is up to 2 % off)."""
+
+LEAST_ENERGY = 0.02
+"""Energy that still counts, in largest forces times reaches of the surface law."""
