@@ -478,7 +478,8 @@ def test_steps_equal_those_of_a_plain_newton_method():
     records, shapes = np.zeros(count, RECORD_FIELDS), np.zeros((count, n))
     outcome, taken = advance(
         height, profile, PRESSURE, hold, remember_nothing, parameters, background, MESH, UNIFORM,
-        controls, fields, clock, np.empty(0), records, shapes, new_room(n, MESH.far.size, modes),
+        controls, fields, clock, np.empty(0), np.zeros(modes), records, shapes,
+        new_room(n, MESH.far.size, modes),
     )  # fmt: skip
     assert outcome == FULL
     assert taken == count

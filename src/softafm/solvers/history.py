@@ -54,7 +54,10 @@ class History:
     profiles
         ``Profiles``, the shapes of the surface, if they were asked for, else None.
     diagnostics
-        Numbers by name, such as ``steps``, which become attributes of results.
+        Numbers by name, such as ``steps``, which become attributes of results. Where there are
+        ``stored_energy_start`` and ``stored_energy_end``, J, of sample, surfaces and lever at the
+        first and the last instant, they differ by the work done less what was dissipated and
+        released.
     warnings
         The ``AccuracyWarning`` that the solver has given, a tuple.
     """

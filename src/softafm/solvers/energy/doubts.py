@@ -111,8 +111,8 @@ def _doubt_jumps(run: "Run") -> tuple[AccuracyWarning, ...]:
     if part <= 1e-2 * run.strictness:
         return ()
     text = (
-        f"jumps of the surface seem to gain {run.gained:.2g} J where they can only lose energy, and "
-        f"count as 0: {part:.2g} of what was dissipated. jump_energy and the loop energy may be off "
-        "by as much; lower the tolerance"
+        f"jumps of the surface seem to gain {run.gained:.2g} J where they can only lose energy, "
+        f"and count as 0: {part:.2g} of what was dissipated. jump_energy and the loop energy may "
+        "be off by as much; lower the tolerance"
     )
     return (AccuracyWarning(text, part),)

@@ -48,6 +48,7 @@ def creep_down(run: "Run", time: float, duration: float) -> None:
     # The clock of the fall starts at 0; the past goes on fading from where it is.
     surface.background = background._replace(since=background.since - time)
     surface.fields = np.vstack([surface.fields, surface.fields[LOAD]])
+    surface.lag_energy = np.append(surface.lag_energy, 0.0)
     for patience in range(MOST_PATIENCE):
         creep_time = 10.0 ** -(FALL_DECADES + patience) * duration
         surface.parameters = parameters._replace(
@@ -64,7 +65,7 @@ def creep_down(run: "Run", time: float, duration: float) -> None:
             break
     surface.mount(lever, state)
     surface.functions, surface.parameters, surface.background = functions, parameters, background
-    surface.fields = surface.fields[:-1].copy()
+    surface.fields, surface.lag_energy = surface.fields[:-1].copy(), surface.lag_energy[:-1].copy()
     run.controls = controls
 
 
@@ -81,13 +82,14 @@ def _would_jump(surface: "Surface", parameters: Parameters, lever: Lever) -> boo
 
     Near a fold a creep is so slow that it seems to have ended.
     """
-    kept, clock = (surface.fields, surface.parameters, surface.lever), surface.clock.copy()
-    surface.fields = surface.fields[:-1].copy()
+    kept = surface.fields, surface.lag_energy, surface.parameters, surface.lever
+    clock = surface.clock.copy()
+    surface.fields, surface.lag_energy = surface.fields[:-1].copy(), surface.lag_energy[:-1].copy()
     surface.parameters = parameters._replace(height=surface.parameters.height)
     surface.lever = lever
     surface.settle()
     jumps = is_jump(surface.clock, clock["axis_gap"], clock["edge"])
-    surface.fields, surface.parameters, surface.lever = kept
+    surface.fields, surface.lag_energy, surface.parameters, surface.lever = kept
     for name in CLOCK_FIELDS.names or ():
         surface.clock[name] = clock[name]
     return jumps

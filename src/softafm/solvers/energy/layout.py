@@ -40,6 +40,7 @@ CLOCK_FIELDS = record(
     "taken", "taken_earlier",  # the last two steps, s
     "frame", "frame_earlier", "frame_earliest",  # radii of the frames of the last three shapes, m
     "edge", "edge_earlier",  # radius of the contact edge, m
+    "widest",  # the largest of these so far, m, in steady cycles of the last cycle
     "zone",  # width of the cohesive zone at the edge, m, 0 out of contact
     "axis_gap",  # gap on the axis, m
     "force", "force_earlier", "force_earliest",  # N
@@ -179,7 +180,7 @@ class Room(NamedTuple):
     rows: np.ndarray
     """(12, n + 1)."""
     fields: np.ndarray
-    """(10 + 4m, n)."""
+    """(10 + 5m, n)."""
     hessian: np.ndarray
     """(n + 1, n + 1)."""
     far: np.ndarray
@@ -213,7 +214,7 @@ def new_room(nodes: int, far: int, elements: int) -> Room:
     """Return room for a mesh and a number of elements."""
     return Room(
         np.empty((12, nodes + 1)),
-        np.empty((10 + 4 * elements, nodes)),
+        np.empty((10 + 5 * elements, nodes)),
         np.empty((nodes + 1, nodes + 1)),
         np.empty((4, far)),
         np.empty((elements + 1, 5)),

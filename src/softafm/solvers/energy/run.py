@@ -97,11 +97,13 @@ class Run:
         self.falls: list[float] = []
         self.jumps: list[float] = []
         self.gained = 0.0
+        self.stored = 0.0, 0.0
 
     def steps(self) -> Iterator[float]:
         """Run, yielding the fraction of the motion done at every return of the compiled loop."""
         surface = self.surface
         self._settle()
+        self.stored = surface.stored_energy(), 0.0
         trigger = self._trigger(-np.inf)
         if surface.clock["force"] >= trigger:
             raise ValueError(
@@ -136,6 +138,7 @@ class Run:
                 if outcome == TRIGGERED:
                     self._turn()
                 yield (surface.time - first) / (self.breaks[-1] - first)
+        self.stored = self.stored[0], surface.stored_energy()
 
     def cycles(self) -> Iterator[float]:
         """Run the motion over and over, until the memory ends a cycle as it began it.
@@ -157,6 +160,7 @@ class Run:
             if self.shapes is not None:
                 self.shapes.clear()
             yield from self.steps()
+            surface.clock["widest"] = self.records[: self.count]["edge"].max()
             gained = surface.rewind(start)
             memory = np.zeros_like(gained) if memory is None else memory
             memory, off = periodic.next_start(memory, gained)
@@ -218,8 +222,8 @@ class Run:
         shapes = np.empty((0 if self.shapes is None else _CHUNK, surface.mesh.nodes.size))
         outcome, count = advance(
             *surface.functions[:-1], surface.parameters, surface.background, surface.mesh,
-            surface.table, controls, surface.fields, surface.clock, surface.lever_state, records,
-            shapes, surface.room(),
+            surface.table, controls, surface.fields, surface.clock, surface.lever_state,
+            surface.lag_energy, records, shapes, surface.room(),
         )  # fmt: skip
         if outcome == TABULATE:
             surface.tabulate(float(surface.clock["wanted"]))
@@ -316,6 +320,8 @@ class Run:
                 "finest_spacing": surface.finest_spacing,
                 "growth": surface.growth,
                 "cycles": max(self.cycle, count_periods(self.motion)),
+                "stored_energy_start": self.stored[0],
+                "stored_energy_end": self.stored[1],
                 "wall_time": seconds,
             },
             warnings=list_doubts(self),

@@ -38,6 +38,7 @@ from softafm.solvers.energy.tuning import (
     FAR_SOFTER,
     FINER_THAN_NEEDED,
     GROWTH,
+    HARDLY_MOVED,
     HARDLY_SOFTER,
     HELD,
     HELD_IF_FAR_SOFTER,
@@ -101,6 +102,7 @@ class Surface:
         elements = self.parameters.retardation.size
         self._rooms: dict[tuple[int, int, int], Room] = {}
         self.fields = np.zeros((MEMORY + elements, self.mesh.nodes.size))
+        self.lag_energy = np.zeros(elements)
         self.clock = new_clock()
         self.clock["time"] = breaks[0]
         self.clock["contraction"] = 0.0 if slack < 2 else np.inf
@@ -267,20 +269,21 @@ class Surface:
             raise DivergedError(f"no stable surface found at height {h0:g} m")
         u, clock["deflection"] = unknowns[:-1], unknowns[-1]
         self.fields[DEFORMATION] = u
-        self.fields[LOAD] = (v - u) / instantaneous
+        load = (v - u) / instantaneous
+        strained = frame * mesh.stiffness @ (load - self.fields[LOAD])
+        self.lag_energy += (0.5 * (load + self.fields[LOAD]) - memory) @ strained
+        self.fields[LOAD] = load
         gap = base + clock["deflection"] - u
         law(gap, self.parameters.law, pressure, scratch, n)
         force = tip_force(pressure, gap, rise, mesh, frame, law, self.parameters.law, far_work)
         edge = frame * find_radius(gap, mesh.nodes, self.edge_gap)
         zone = frame * find_radius(gap, mesh.nodes, self.open_gap) - edge
-        lag = self.fields[LOAD] - memory
-        rates = elements / self.parameters.retardation
         clock["frame_earlier"] = clock["frame_earliest"] = frame
         clock["edge"], clock["axis_gap"], clock["force"] = edge, gap[0], force
         clock["zone"] = zone if edge else 0.0
         clock["force_scale"] = max(clock["force_scale"], abs(force))
         clock["history"] = 1
-        loss = 2 * np.pi * frame * rates @ np.sum((lag @ mesh.stiffness) * lag, axis=1)
+        loss = 4 * np.pi * (elements / self.parameters.retardation) @ self.lag_energy
         spacing = frame * mesh.edge_spacing
         coarseness = spacing / max(zone, 1e-9 * frame) if edge else 0.0
         height = h0 + clock["deflection"]
@@ -309,6 +312,19 @@ class Surface:
         beyond = np.sum(_WEIGHTS * density(r, level) * r**3 / (2 * end))
         bending = 0.5 * self.lever.stiffness * deflection**2 if self.bends else 0.0
         return float(elastic + bending + 2 * np.pi * (near + beyond))
+
+    def stored_energy(self) -> float:
+        """Energy stored in sample, surfaces and lever, J.
+
+        That of ``energy``, and ½ J_m ⟨y_m, K⁻¹ y_m⟩ of the elements. Old rims in y_m may lie on
+        coarse nodes; as y_m is q less a lag, ⟨q, K⁻¹ (y_m − ½ q)⟩ and the energy of the lag is the
+        same, but of elements that have hardly moved a small difference.
+        """
+        load, memory, frame = self.fields[LOAD], self.memory(), self.clock["frame"]
+        summed = 0.5 * frame * np.sum((memory @ self.mesh.stiffness) * memory, axis=1)
+        carried = frame * (memory - 0.5 * load) @ self.mesh.stiffness @ load + self.lag_energy
+        elements = np.where(summed < HARDLY_MOVED * self.lag_energy, summed, carried)
+        return self.energy() + float(2 * np.pi * self.parameters.compliance[1:] @ elements)
 
 
 def choose_spacing_held(parameters: Parameters, duration: float) -> float:

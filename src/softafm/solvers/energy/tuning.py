@@ -58,6 +58,12 @@ RINGING = 0.7
 DAMPING = 1.5
 """Part of the quadratic's correction that damps it, with the other sign (same test)."""
 
+AS_WIDE = 0.95
+"""Edge, in the widest so far, from which the memory has no old rim far outside it."""
+
+HARDLY_MOVED = 1e-2
+"""Energy of an element, in that of its lag, below which it is summed up as it is."""
+
 # The frame that rides on the contact edge.
 
 OPENING = 1.5
