@@ -281,7 +281,7 @@ class Surface:
         clock["frame_earlier"] = clock["frame_earliest"] = frame
         clock["edge"], clock["axis_gap"], clock["force"] = edge, gap[0], force
         clock["zone"] = zone if edge else 0.0
-        clock["force_scale"] = max(clock["force_scale"], abs(force))
+        clock["force_scale"] = max(clock["force_scale"], -force)
         clock["history"] = 1
         loss = 4 * np.pi * (elements / self.parameters.retardation) @ self.lag_energy
         spacing = frame * mesh.edge_spacing
