@@ -14,7 +14,7 @@ from scipy.linalg import LinAlgError, cho_factor, cho_solve
 from softafm.errors import DivergedError
 from softafm.solvers.energy.equilibrium import raise_tip, tip_force
 from softafm.solvers.energy.frame import transfer
-from softafm.solvers.energy.layout import DEFORMATION, LOAD, LOAD_EARLIER, MEMORY, ORIGIN
+from softafm.solvers.energy.layout import LOAD, MEMORY, ORIGIN
 from softafm.solvers.energy.riding import ride
 from softafm.solvers.energy.tuning import CLOSEST, RIDING_ERROR
 
@@ -66,7 +66,9 @@ class Landing:
         origin = self.surface.parameters.law[ORIGIN] + self.closed_gap
         # dF = 2 E a dδ along the contacts of no adhesion; adhesion pulls by what it does to δ.
         whole = depth + np.sqrt(2 * pi * self.work / modulus * radius)
-        thin = np.concatenate([[whole[0] * radius[0] / 2], np.diff(whole) * (radius[1:] + radius[:-1]) / 2])
+        thin = np.concatenate(
+            [[whole[0] * radius[0] / 2], np.diff(whole) * (radius[1:] + radius[:-1]) / 2]
+        )
         force = 2 * modulus * np.cumsum(thin)
         force -= np.sqrt(8 * pi * self.work * modulus * radius**3)
         return origin + self.displacement(np.zeros(1))[0] - depth, force
@@ -162,7 +164,9 @@ class Landing:
             else:
                 slope = (miss - last[1]) / (radius - last[0])
             last = radius, miss
-            change = float(np.clip(-miss / slope, -_FARTHEST_STEP * radius, _FARTHEST_STEP * radius))
+            change = float(
+                np.clip(-miss / slope, -_FARTHEST_STEP * radius, _FARTHEST_STEP * radius)
+            )
             next_height = height + slope * change
             following = self.crack(radius + change, next_height)
             shape = shape + following - self.crack(radius, height)
@@ -172,7 +176,9 @@ class Landing:
         return self.solve(radius, shape, height, False)
 
 
-def land(surface: "Surface", time: float, before: float, touching: bool) -> tuple[float, ...] | None:
+def land(
+    surface: "Surface", time: float, before: float, touching: bool
+) -> tuple[float, ...] | None:
     """Bring a surface that has lost its hold to where it goes; return its record, None if unknown.
 
     ``before`` is its energy, J, at the start of the jump, ``touching`` whether it was in contact
@@ -200,9 +206,9 @@ def _snap_in(surface: "Surface", time: float) -> tuple[float, ...] | None:
     fields = np.zeros((surface.fields.shape[0], mesh.nodes.size))
     if fields.shape[0] > MEMORY:
         transfer(
-            surface.fields[MEMORY:].copy(), old.nodes[-1], old.edge_spacing, old.growth,
+            surface.fields[LOAD:].copy(), old.nodes[-1], old.edge_spacing, old.growth,
             landing.frame * old.decay, radius / landing.frame, mesh.nodes,
-            np.empty((7, mesh.nodes.size)), fields[MEMORY:],
+            np.empty((7, mesh.nodes.size)), fields[LOAD:],
         )  # fmt: skip
     surface.fields = fields
     surface.clock["frame"] = radius

@@ -8,7 +8,7 @@ from math import inf
 
 from numba import float64, int64, types
 
-from softafm.compiled.dense import multiply, multiply_rows
+from softafm.compiled.dense import multiply
 from softafm.compiled.functions import (
     ACCEPTANCE,
     HEIGHT,
@@ -49,6 +49,7 @@ from softafm.solvers.energy.layout import (
 from softafm.solvers.energy.memory import (
     CURVATURE,
     NEW,
+    carry_lag_energy,
     dissipated_power,
 )  # fmt: skip
 from softafm.solvers.energy.proposal import choose_step, furnish, propose
@@ -64,6 +65,7 @@ from softafm.solvers.energy.solution import (
 from softafm.solvers.energy.stiffness import find_stiffness
 from softafm.solvers.energy.tracing import answer_shift
 from softafm.solvers.energy.tuning import (
+    AS_WIDE,
     AT_TRIGGER,
     LEAST_GROWTH,
     LEAST_RETRY,
@@ -72,7 +74,6 @@ from softafm.solvers.energy.tuning import (
     RETRIED,
     SAFETY,
 )  # fmt: skip
-
 
 TRACES = 2
 """How a trial ``rides`` whose memory does, too."""
@@ -124,7 +125,9 @@ def judge(trial, force, parameters, mesh, controls, clock, work, room):
 
 
 @inline
-def accept(trial, force, growth, parameters, mesh, controls, fields, clock, work, record):
+def accept(
+    trial, force, growth, parameters, mesh, controls, fields, clock, lag_energy, work, record
+):
     """Make a step's end the state, and write it into a record."""
     n, elements = mesh.nodes.size, parameters.retardation.size
     gap, frame, memory = work.newton[0, :n], trial.frame, work.past[1:]
@@ -133,7 +136,6 @@ def accept(trial, force, growth, parameters, mesh, controls, fields, clock, work
             memory[m, i] += work.weights[m, NEW] * work.load_new[i]
             work.lags[m, i] = work.load_new[i] - memory[m, i] - work.old[m, i]
             fields[MEMORY + m, i] = memory[m, i]
-    multiply_rows(work.lags, mesh.stiffness, work.strained)
     for i in range(n):
         fields[EARLIEST, i] = fields[EARLIER, i]
         fields[EARLIER, i] = fields[DEFORMATION, i]
@@ -146,6 +148,13 @@ def accept(trial, force, growth, parameters, mesh, controls, fields, clock, work
     else:
         edge = frame * find_radius(gap, mesh.nodes, controls.edge_gap)
         clock.rides = 0.0
+    # A contact about as wide as ever has no old rim outside its edge; a load that was traced has
+    # left none that is sharp.
+    anew = edge >= AS_WIDE * clock.widest or trial.rides == TRACES
+    clock.widest = max(clock.widest, edge)
+    carry_lag_energy(
+        frame, anew, work.weights, work.left, work.lags, work.strained, mesh.stiffness, lag_energy
+    )
     move_clock(clock, trial.step, frame, edge, force, work.u[n])
     clock.step = max(
         trial.step * min(MOST_GROWTH, max(LEAST_GROWTH, growth)), 0.999 * controls.shortest_step
@@ -155,14 +164,12 @@ def accept(trial, force, growth, parameters, mesh, controls, fields, clock, work
 
     record.time, record.height = clock.time, trial.height + work.u[n]
     record.force, record.edge, record.axis = force, edge, work.u[0]
-    record.loss = dissipated_power(
-        frame, parameters.compliance, parameters.retardation, work.lags, work.strained
-    )
+    record.loss = dissipated_power(parameters.compliance, parameters.retardation, lag_energy)
     # The cohesive zone as it is now: where the gap opens outside the edge.
-    record.coarseness = 0.0
+    clock.zone, record.coarseness = 0.0, 0.0
     if edge > 0.0:
-        zone = frame * find_radius(gap, mesh.nodes, controls.open_gap) - edge
-        record.coarseness = frame * mesh.edge_spacing / max(zone, 1e-9 * frame)
+        clock.zone = frame * find_radius(gap, mesh.nodes, controls.open_gap) - edge
+        record.coarseness = frame * mesh.edge_spacing / max(clock.zone, 1e-9 * frame)
     record.frame, record.jump = frame, 0.0
 
 
@@ -190,28 +197,28 @@ def move_clock(clock, step, frame, edge, force, deflection):
     clock.edge_earlier, clock.taken_earlier = clock.edge, clock.taken
     clock.deflection, clock.force, clock.frame = deflection, force, frame
     clock.edge, clock.taken = edge, step
-    clock.force_scale = max(clock.force_scale, abs(force))
+    clock.force_scale = max(clock.force_scale, -force)
 
 
 @compile_for(
     types.UniTuple(int64, 2)(
         pointer_to(HEIGHT), pointer_to(PROFILE), pointer_to(PRESSURE), pointer_to(RESPONSE),
         pointer_to(ACCEPTANCE), PARAMETERS, BACKGROUND, MESH, TABLE, CONTROLS, MATRIX, CLOCK,
-        VECTOR, RECORDS, MATRIX, ROOM,
+        VECTOR, VECTOR, RECORDS, MATRIX, ROOM,
     ),
 )  # fmt: skip
 def advance(
     height, profile, law, respond, accept_force, parameters, background, mesh, table, controls,
-    fields, clock, lever_state, records, shapes, room,
+    fields, clock, lever_state, lag_energy, records, shapes, room,
 ):  # fmt: skip
     """Step the surface in time until ``controls.end``, full records, a need to remesh, TABULATE: a
     frame is wanted whose stiffness the table does not reach, or FALL: no stable shape within the
     shortest step, which is not taken.
 
-    ``fields`` (MEMORY + elements, n), ``clock`` and ``lever_state`` hold the state and are updated,
-    by accepted steps only. Every accepted step
-    fills one of ``records``, and a row of ``shapes`` (the deformation) if that has rows. Returns
-    why it stopped, and the number of steps accepted. ``room`` is overwritten.
+    ``fields`` (MEMORY + elements, n), ``clock``, ``lever_state`` and ``lag_energy`` (elements,)
+    hold the state and are updated, by accepted steps only. Every accepted step fills one of
+    ``records``, and a row of ``shapes`` (the deformation) if that has rows. Returns why it stopped,
+    and the number of steps accepted. ``room`` is overwritten.
     """
     n = mesh.nodes.size
     work = furnish(room)
@@ -282,7 +289,10 @@ def advance(
         clock.time = controls.end if step == left else clock.time + step
         accept_force(clock.time, step, clock.force, force, parameters.lever, lever_state)
         record = records[count]
-        accept(trial, force, growth, parameters, mesh, controls, fields, clock, work, record)
+        accept(
+            trial, force, growth, parameters, mesh, controls, fields, clock, lag_energy, work,
+            record,
+        )  # fmt: skip
         if shapes.shape[0] > count:
             for i in range(n):
                 shapes[count, i] = work.u[i]

@@ -9,7 +9,7 @@ from softafm.bodies.mesh import UnitMesh, unit_mesh
 from softafm.bodies.stiffness import STEP, Stiffness
 from softafm.errors import DivergedError
 from softafm.instrument.lever import Lever
-from softafm.instrument.motion import Motion
+from softafm.instrument.motion import Motion, is_steady
 from softafm.solvers.energy.descent import descend
 from softafm.solvers.energy.equilibrium import raise_tip, tip_force
 from softafm.solvers.energy.frame import choose_frame, find_radius, transfer
@@ -35,8 +35,13 @@ from softafm.solvers.energy.tuning import (
     COARSEST_SPACING,
     EQUILIBRIUM_ERROR,
     EXTENT,
+    FAR_SOFTER,
     FINER_THAN_NEEDED,
     GROWTH,
+    HARDLY_MOVED,
+    HARDLY_SOFTER,
+    HELD,
+    HELD_IF_FAR_SOFTER,
     RIDE_FROM,
     SLACK,
     SLACKER,
@@ -88,6 +93,8 @@ class Surface:
         slack = contact.tabor_softened > SLACK
         self.ride_from = RIDE_FROM * self.open_frame if slack else inf
         self.trace_from = TRACE_FROM if contact.tabor_softened > SLACKER else inf
+        duration = inf if is_steady(motion) else breaks[-1] - breaks[0]
+        self.held = choose_spacing_held(self.parameters, duration)
         self.finest_level = max(0, ceil(log2(COARSEST_SPACING / finest_spacing)))
         self.level = self.first_level = self._find_level(0.4 * contact.open_width / self.open_frame)
         self._lay(self._build_mesh(self.level))
@@ -97,10 +104,12 @@ class Surface:
         elements = self.parameters.retardation.size
         self._rooms: dict[tuple[int, int, int], Room] = {}
         self.fields = np.zeros((MEMORY + elements, self.mesh.nodes.size))
+        self.lag_energy = np.zeros(elements)
         self.clock = new_clock()
         self.clock["time"] = breaks[0]
         self.clock["contraction"] = 0.0 if contact.tabor_instantaneous < 2 * SLACK else np.inf
-        first = contact.contact_radius(float(motion.height(breaks[0])))
+        # The flat relaxed surface answers the first instant with its short-term modulus.
+        first = contact.contact_radius_instantaneous(float(motion.height(breaks[0])))
         self.clock["frame"] = choose_frame(first, self.open_frame)
         self.background = Background(np.empty((0, 0)), 1.0, 1.0, 1.0, 1.0, 0.0, 0.0)
         self.clock["force_scale"] = contact.force_scale
@@ -159,6 +168,11 @@ class Surface:
         return self._rooms[size]
 
     @property
+    def spacing_held(self) -> float:
+        """Spacing of the nodes under a receding edge, in zones, up to which the frame stays."""
+        return self.held * self.target
+
+    @property
     def coarseness_allowed(self) -> tuple[float, float]:
         """Bounds of the coarseness within which the mesh is kept."""
         finest = FINER_THAN_NEEDED * self.target if self.level > 0 else 0.0
@@ -191,12 +205,13 @@ class Surface:
 
     def keep(self) -> tuple[Any, ...]:
         """Return what ``restore`` needs to undo what happens from now on."""
-        return self.fields, self.clock.copy(), self.level, self.mesh, self.stiffness, self.table
+        grid = self.level, self.mesh, self.stiffness, self.table
+        return self.fields, self.lag_energy.copy(), self.clock.copy(), *grid
 
     def restore(self, kept: tuple[Any, ...]) -> None:
         """Be again as ``kept``."""
-        fields, clock, self.level, self.mesh, self.stiffness, self.table = kept
-        self.fields = fields
+        self.fields, self.lag_energy, clock, *grid = kept
+        self.level, self.mesh, self.stiffness, self.table = grid
         for name in clock.dtype.names:
             self.clock[name] = clock[name]
 
@@ -289,20 +304,22 @@ class Surface:
         h0, memory = height_at(self.time, self.parameters.height), self.memory()
         elements = self.parameters.compliance[1:]
         self.fields[DEFORMATION] = u
-        self.fields[LOAD] = (v - u) / self.parameters.compliance[0]
+        load = (v - u) / self.parameters.compliance[0]
+        strained = frame * mesh.stiffness @ (load - self.fields[LOAD])
+        self.lag_energy += (0.5 * (load + self.fields[LOAD]) - memory) @ strained
+        self.fields[LOAD] = load
         gap = h0 - self.parameters.law[ORIGIN] + tip + clock["deflection"] - u
         law(gap, self.parameters.law, pressure, scratch, n)
         force = tip_force(pressure, gap, rise, mesh, frame, law, self.parameters.law, far_work)
         edge = frame * find_radius(gap, mesh.nodes, self.edge_gap)
         zone = frame * find_radius(gap, mesh.nodes, self.open_gap) - edge
-        lag = self.fields[LOAD] - memory
-        rates = elements / self.parameters.retardation
         clock["frame_earlier"] = clock["frame_earliest"] = frame
         clock["edge"], clock["axis_gap"], clock["force"] = edge, gap[0], force
-        clock["force_scale"] = max(clock["force_scale"], abs(force))
+        clock["zone"] = zone if edge else 0.0
+        clock["force_scale"] = max(clock["force_scale"], -force)
         clock["history"] = 1
         clock["rides"] = 0.0
-        loss = 2 * np.pi * frame * rates @ np.sum((lag @ mesh.stiffness) * lag, axis=1)
+        loss = 4 * np.pi * (elements / self.parameters.retardation) @ self.lag_energy
         spacing = frame * mesh.edge_spacing
         coarseness = spacing / max(zone, 1e-9 * frame) if edge else 0.0
         height = h0 + clock["deflection"]
@@ -325,9 +342,37 @@ class Surface:
         near = frame**2 * mesh.masses @ density(frame * mesh.nodes, self.fields[DEFORMATION])
         end = frame * mesh.nodes[-1]
         r = 2 * end / (1 + _POINTS)
-        beyond = np.sum(_WEIGHTS * density(r, 0.0) * r**3 / (2 * end))
+        # There the surface is as high as at the last node, as for the force: in a wide dent the tip
+        # would be inside one that is flat.
+        level = self.fields[DEFORMATION][-1]
+        beyond = np.sum(_WEIGHTS * density(r, level) * r**3 / (2 * end))
         bending = 0.5 * self.lever.stiffness * deflection**2 if self.bends else 0.0
         return float(elastic + bending + 2 * np.pi * (near + beyond))
+
+    def stored_energy(self) -> float:
+        """Energy stored in sample, surfaces and lever, J.
+
+        That of ``energy``, and ½ J_m ⟨y_m, K⁻¹ y_m⟩ of the elements. Old rims in y_m may lie on
+        coarse nodes; as y_m is q less a lag, ⟨q, K⁻¹ (y_m − ½ q)⟩ and the energy of the lag is the
+        same, but of elements that have hardly moved a small difference.
+        """
+        load, memory, frame = self.fields[LOAD], self.memory(), self.clock["frame"]
+        summed = 0.5 * frame * np.sum((memory @ self.mesh.stiffness) * memory, axis=1)
+        carried = frame * (memory - 0.5 * load) @ self.mesh.stiffness @ load + self.lag_energy
+        elements = np.where(summed < HARDLY_MOVED * self.lag_energy, summed, carried)
+        return self.energy() + float(2 * np.pi * self.parameters.compliance[1:] @ elements)
+
+
+def choose_spacing_held(parameters: Parameters, duration: float) -> float:
+    """Return the spacing under a receding edge, in that aimed at, up to which the frame stays.
+
+    By how much softer the sample gets in a ``duration``, s: one that does not has no memory.
+    """
+    elements, times = parameters.compliance[1:], parameters.retardation
+    softened = -elements @ np.expm1(-duration / times) / parameters.compliance[0]
+    if softened < HARDLY_SOFTER:
+        return 0.0
+    return HELD if softened < FAR_SOFTER else HELD_IF_FAR_SOFTER
 
 
 def find_gap_origin(contact: Any) -> float:

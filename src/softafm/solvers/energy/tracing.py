@@ -32,7 +32,7 @@ from softafm.solvers.energy.layout import (
     ROOM,
     VECTOR,
 )
-from softafm.solvers.energy.memory import CURVATURE, EARLIER, NEW, recall
+from softafm.solvers.energy.memory import CURVATURE, EARLIER, recall
 from softafm.solvers.energy.riding import find_lean, lay_phase
 from softafm.solvers.energy.tuning import (
     DAMPING,
