@@ -8,7 +8,14 @@ import numpy as np
 
 from softafm.errors import DivergedError
 from softafm.instrument.lever import Lever
-from softafm.instrument.motion import Motion, Turning, bound_speed, count_periods, find_setpoint
+from softafm.instrument.motion import (
+    Motion,
+    Turning,
+    bound_speed,
+    count_periods,
+    find_setpoint,
+    is_steady,
+)
 from softafm.solvers.energy.doubts import list_doubts, suggest_longer_range
 from softafm.solvers.energy.fall import creep_down
 from softafm.solvers.energy.layout import (
@@ -95,11 +102,14 @@ class Run:
         # How well a memory can be found is limited by the errors of a cycle.
         self.steadiness = STEADY * self.strictness**0.5
         self.falls: list[float] = []
+        self.energy_before: float | None = None
 
     def steps(self) -> Iterator[float]:
         """Run, yielding the fraction of the motion done at every return of the compiled loop."""
         surface = self.surface
         self._settle()
+        if not is_steady(self.motion):
+            self.energy_before = surface.stored_energy()
         trigger = self._trigger(-np.inf)
         if surface.clock["force"] >= trigger:
             raise ValueError(
@@ -301,6 +311,13 @@ class Run:
                 "wall_time": seconds,
             },
             warnings=list_doubts(self),
+            energy_stored=self._measure_stored(),
+        )
+
+    def _measure_stored(self) -> float:
+        """Return the energy stored since the start, J; a steady cycle ends as it began."""
+        return (
+            0.0 if self.energy_before is None else self.surface.stored_energy() - self.energy_before
         )
 
 

@@ -294,6 +294,12 @@ class Surface:
         bending = 0.5 * self.lever.stiffness * deflection**2 if self.bends else 0.0
         return float(elastic + bending + 2 * np.pi * (near + beyond))
 
+    def stored_energy(self) -> float:
+        """Energy that surface and lever hold, that of the springs of all elements included, J."""
+        memory, elements = self.memory(), self.parameters.compliance[1:]
+        springs = elements @ np.sum((memory @ self.mesh.stiffness) * memory, axis=1)
+        return self.energy() + float(np.pi * self.clock["frame"] * springs)
+
 
 def find_gap_origin(contact: Any) -> float:
     """Return where the solver counts gaps from, m, so that pressures change alike in all of them.
