@@ -203,7 +203,7 @@ def judge(entry: dict) -> dict[str, bool]:
         "NaN": bool(np.isnan(values).any()),
         "no truth": "no_truth" in entry,
         "false alarm": within and warned,
-        "cost": 1 / FACTOR <= entry["expected"] / entry["seconds"] <= FACTOR,
+        "cost": 1 / FACTOR <= entry["expected"] / max(entry["seconds"], 1e-3) <= FACTOR,
     }
 
 
