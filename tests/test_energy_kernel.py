@@ -465,7 +465,8 @@ def test_steps_equal_those_of_a_plain_newton_method():
     controls = Controls(
         end=1.0, shortest_step=step / 10, longest_step=step, top_speed=1e-300, open_frame=FRAME,
         edge_gap=LAW.gap_of_largest_tension, open_gap=1.0, prediction=1e3, memory=1e3, force=1e3,
-        newton=1e-11, slack=2.0, finest=0.0, coarsest=np.inf, most_tries=1e6, trigger=np.inf,
+        newton=1e-11, slack=2.0, held=0.0, finest=0.0, coarsest=np.inf, most_tries=1e6,
+        trigger=np.inf,
     )  # fmt: skip
     n, modes = MESH.nodes.size, retardation.size
     past = 0.2 / np.array([[3e-9], [1e-9]]) * np.array([[Z0], [-Z0]]) / (1 + MESH.nodes**2)
@@ -477,7 +478,8 @@ def test_steps_equal_those_of_a_plain_newton_method():
     records, shapes = np.zeros(count, RECORD_FIELDS), np.zeros((count, n))
     outcome, taken = advance(
         height, profile, PRESSURE, hold, remember_nothing, parameters, background, MESH, UNIFORM,
-        controls, fields, clock, np.empty(0), records, shapes, new_room(n, MESH.far.size, modes),
+        controls, fields, clock, np.empty(0), np.zeros(modes), records, shapes,
+        new_room(n, MESH.far.size, modes),
     )  # fmt: skip
     assert outcome == FULL
     assert taken == count

@@ -268,13 +268,25 @@ class Contact:
         The stable branch of JKR (Johnson, Kendall and Roberts 1971), by the ``depth`` of the body;
         zero where no contact exists. A sample that flows counts with its softened modulus.
         """
+        return self._find_contact_radius(tip_height, self.softened_modulus)
+
+    def contact_radius_instantaneous(self, tip_height: float) -> float:
+        """Radius of the contact at a tip height (m) before the sample has crept, m.
+
+        As ``contact_radius``, with the short-term modulus: the smaller of the two.
+        """
+        if self.contact_radius(tip_height) == 0:
+            return 0.0  # a stiffer sample reaches no farther for the tip
+        return self._find_contact_radius(tip_height, self._modulus_instantaneous)
+
+    def _find_contact_radius(self, tip_height: float, modulus: float) -> float:
         depth = -tip_height
-        low, shallowest = self._last_contact
+        low, shallowest = self._last_contact(modulus)
         if depth < shallowest:
             return 0.0
         high = 2 * low
         for _ in range(_MOST_DOUBLINGS):
-            if not self._relaxed_depth(np.array([high]))[0] < depth:
+            if not self._depth(np.array([high]), modulus)[0] < depth:
                 break
             low, high = high, 2 * high
         else:
@@ -284,23 +296,29 @@ class Contact:
             )
         for _ in range(_ZOOMS):
             radius = np.linspace(low, high, _POINTS)
-            above = np.flatnonzero(self._relaxed_depth(radius) >= depth)[:1]
+            above = np.flatnonzero(self._depth(radius, modulus) >= depth)[:1]
             last = above[0] if above.size else _POINTS - 1
             low, high = radius[max(last - 1, 0)], radius[last]
         return float(high)
 
     @cached_property
-    def _last_contact(self) -> tuple[float, float]:
-        """Radius of the smallest stable relaxed contact, and the depth of the tip there, m."""
-        radius = self.tip.radius_at(self.reach) * np.geomspace(1e-6, 1e6, 6 * _POINTS)
-        for _ in range(_ZOOMS // 2 + 1):  # a least depth has twice the digits of its radius
-            depth = self._relaxed_depth(radius)
-            least = np.clip(depth.argmin(), 1, radius.size - 2)
-            radius = np.linspace(radius[least - 1], radius[least + 1], _POINTS)
-        depth = self._relaxed_depth(radius)
-        return float(radius[depth.argmin()]), float(depth.min())
+    def _last_contacts(self) -> dict[float, tuple[float, float]]:
+        return {}
 
-    def _relaxed_depth(self, radius: np.ndarray) -> np.ndarray:
-        """Depth of the tip, m, in relaxed contacts of some radii, m, shape (n,)."""
+    def _last_contact(self, modulus: float) -> tuple[float, float]:
+        """Radius of the smallest stable contact at a modulus, and the depth of the tip there, m."""
+        if modulus not in self._last_contacts:
+            radius = self.tip.radius_at(self.reach) * np.geomspace(1e-6, 1e6, 6 * _POINTS)
+            for _ in range(_ZOOMS // 2 + 1):  # a least depth has twice the digits of its radius
+                depth = self._depth(radius, modulus)
+                least = np.clip(depth.argmin(), 1, radius.size - 2)
+                radius = np.linspace(radius[least - 1], radius[least + 1], _POINTS)
+            depth = self._depth(radius, modulus)
+            last = float(radius[depth.argmin()]), float(depth.min())
+            self._last_contacts[modulus] = last
+        return self._last_contacts[modulus]
+
+    def _depth(self, radius: np.ndarray, modulus: float) -> np.ndarray:
+        """Depth of the tip, m, in contacts of some radii, m, shape (n,), at a modulus, Pa."""
         work = self.surface.work_of_adhesion if self.adhesive else 0.0
-        return self.body.depth(self.tip, radius, self.softened_modulus, work)
+        return self.body.depth(self.tip, radius, modulus, work)

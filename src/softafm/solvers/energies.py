@@ -1,9 +1,11 @@
 """Where the energy of a motion goes: into dashpots, jumps, and what is stored at its end."""
 
-from math import hypot, isfinite
+from math import hypot, isfinite, isnan, nan
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
+
+from softafm.instrument.motion import is_steady
 
 if TYPE_CHECKING:
     from softafm.solvers.history import History
@@ -97,14 +99,18 @@ def measure_energies(history: "History", start: float, stop: float) -> Energies:
 def _find_stored(history: "History", inside: np.ndarray, jumped: bool) -> float | None:
     """Return the energy stored between the instants ``inside``, J, if it is known.
 
-    An elastic contact that is back where it was, and not caught on another branch, holds none.
+    A steady cycle ends as it began, and so does an elastic contact that is back where it was, and
+    not caught on another branch.
     """
-    if history.energy_stored is None:
+    before, after = (
+        history.diagnostics.get(f"stored_energy_{end}", nan) for end in ("start", "end")
+    )
+    if isnan(before) or isnan(after):
         return None
     height = history.motion.height(history.time[inside])
     edge = history.contact_radius[inside]
     back = abs(height[-1] - height[0]) <= 1e-9 * np.ptp(height)
     free = not jumped or edge[0] == edge[-1] == 0
-    if back and free and not history.viscous_power.any():
+    if is_steady(history.motion) or (back and free and not history.viscous_power.any()):
         return 0.0
-    return history.energy_stored if inside.all() else None
+    return after - before if inside.all() else None

@@ -55,12 +55,12 @@ class History:
     profiles
         ``Profiles``, the shapes of the surface, if they were asked for, else None.
     diagnostics
-        Numbers by name, such as ``steps``, which become attributes of results.
+        Numbers by name, such as ``steps``, which become attributes of results. Where there are
+        ``stored_energy_start`` and ``stored_energy_end``, J, of sample, surfaces and lever at the
+        first and the last instant, they differ by the work done less what was dissipated and
+        released.
     warnings
         The ``AccuracyWarning`` that the solver has given, a tuple.
-    energy_stored
-        Energy that sample, surface forces and lever hold at the end more than at the start, J: 0
-        of a cycle that is steady, None of a solver that does not state it.
     """
 
     time: np.ndarray
@@ -76,7 +76,6 @@ class History:
     profiles: Profiles | None = None
     diagnostics: dict[str, float] = field(default_factory=dict)
     warnings: tuple[AccuracyWarning, ...] = ()
-    energy_stored: float | None = None
     _quadratures: dict[Any, Any] = field(
         default_factory=dict, init=False, repr=False, compare=False
     )

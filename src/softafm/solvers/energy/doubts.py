@@ -3,8 +3,10 @@
 from math import sqrt
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
 from softafm.errors import AccuracyWarning
-from softafm.solvers.energy.tuning import COARSER_THAN_NEEDED, SHARPEST, SLACKEST
+from softafm.solvers.energy.tuning import COARSER_THAN_NEEDED, LEAST_ENERGY, SHARPEST, SLACKEST
 
 if TYPE_CHECKING:
     from softafm.solvers.energy.run import Run
@@ -18,6 +20,7 @@ def list_doubts(run: "Run") -> tuple[AccuracyWarning, ...]:
         *_doubt_slackness(run),
         *_doubt_sharpness(run),
         *_doubt_width(run),
+        *_doubt_jumps(run),
     )
 
 
@@ -98,3 +101,18 @@ def _doubt_width(run: "Run") -> tuple[AccuracyWarning, ...]:
         "energies may be wrong. Indent less, or take a sharper tip"
     )
     return (AccuracyWarning(text, widest / body.widest),)
+
+
+def _doubt_jumps(run: "Run") -> tuple[AccuracyWarning, ...]:
+    records = run.records[: run.count]
+    seen = records["jump"].sum() + np.trapezoid(records["loss"], records["time"])
+    felt = LEAST_ENERGY * np.abs(records["force"]).max(initial=0.0) * run.contact.reach
+    part = run.gained / max(seen, felt)
+    if part <= 1e-2 * run.strictness:
+        return ()
+    text = (
+        f"jumps of the surface seem to gain {run.gained:.2g} J where they can only lose energy, "
+        f"and count as 0: {part:.2g} of what was dissipated. jump_energy and the loop energy may "
+        "be off by as much; lower the tolerance"
+    )
+    return (AccuracyWarning(text, part),)

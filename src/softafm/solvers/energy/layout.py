@@ -40,6 +40,8 @@ CLOCK_FIELDS = record(
     "taken", "taken_earlier",  # the last two steps, s
     "frame", "frame_earlier", "frame_earliest",  # radii of the frames of the last three shapes, m
     "edge", "edge_earlier",  # radius of the contact edge, m
+    "widest",  # the largest of these so far, m, in steady cycles of the last cycle
+    "zone",  # width of the cohesive zone at the edge, m, 0 out of contact
     "axis_gap",  # gap on the axis, m
     "force", "force_earlier", "force_earliest",  # N
     "force_scale",  # the largest force so far, N
@@ -147,7 +149,8 @@ class Controls(NamedTuple):
 
     ``prediction``, ``memory`` and ``force`` are the errors allowed per step, ``newton`` that of an
     equilibrium; all relative to the gap, but ``force`` to the largest force so far.
-    ``slack`` is how far the edge moves, in edge spacings, while the frame catches up with it.
+    ``slack`` is how far the edge moves, in edge spacings, while the frame catches up with it; the
+    frame stays behind an edge where it is that its nodes lie closer than ``held`` times the zone.
     Remeshing is asked for when the coarseness of a record leaves ``finest`` to ``coarsest``.
     The step in which the force reaches ``trigger``, N, is the last.
     """
@@ -164,6 +167,7 @@ class Controls(NamedTuple):
     force: float
     newton: float
     slack: float
+    held: float
     finest: float
     coarsest: float
     most_tries: float
@@ -176,7 +180,7 @@ class Room(NamedTuple):
     rows: np.ndarray
     """(12, n + 1)."""
     fields: np.ndarray
-    """(10 + 4m, n)."""
+    """(10 + 5m, n)."""
     hessian: np.ndarray
     """(n + 1, n + 1)."""
     far: np.ndarray
@@ -210,7 +214,7 @@ def new_room(nodes: int, far: int, elements: int) -> Room:
     """Return room for a mesh and a number of elements."""
     return Room(
         np.empty((12, nodes + 1)),
-        np.empty((10 + 4 * elements, nodes)),
+        np.empty((10 + 5 * elements, nodes)),
         np.empty((nodes + 1, nodes + 1)),
         np.empty((4, far)),
         np.empty((elements + 1, 5)),

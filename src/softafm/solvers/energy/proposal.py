@@ -38,7 +38,8 @@ class Work(NamedTuple):
     """Views of a ``Room``: what a step works in, for n nodes, f radii beyond and m elements.
 
     ``memory`` (m, n) is that of the run, at first without the part of the new load; ``old`` that of
-    the background. ``past`` (m + 1, n) holds load and memory of the instant before. Of ``u``
+    the background. ``past`` (m + 1, n) holds load and memory of the instant before, ``left`` (m, n)
+    what the step leaves of their lags. Of ``u``
     (n + 1,) the last is the deflection of the lever. The rows of ``newton`` (4, n + 1) are gap,
     pressure, slope, and a change of u.
     """
@@ -56,6 +57,7 @@ class Work(NamedTuple):
     shifting: np.ndarray
     past: np.ndarray
     old: np.ndarray
+    left: np.ndarray
     lags: np.ndarray
     strained: np.ndarray
     hessian: np.ndarray
@@ -85,7 +87,8 @@ def furnish(room):
     return Work(
         rows[0], rows[1, :n], rows[2, :n], rows[3, :n], rows[4, :n], rows[5, :n], rows[6, :n],
         rows[7:11], fields[0:1], fields[1:2], fields[2:9], fields[9 : 10 + m],
-        fields[10 + m : 10 + 2 * m], fields[10 + 2 * m : 10 + 3 * m], fields[10 + 3 * m :],
+        fields[10 + m : 10 + 2 * m], fields[10 + 2 * m : 10 + 3 * m],
+        fields[10 + 3 * m : 10 + 4 * m], fields[10 + 4 * m :],
         room.hessian, room.far[0], room.far[1:], room.weights[:m], room.weights[m],
     )  # fmt: skip
 
@@ -117,10 +120,13 @@ def find_extrapolation_weights(history, step, last, before, weights):
 
 @compile_for((float64, float64, int64, MATRIX, CLOCK, MESH, VECTOR, VECTOR, MATRIX, MATRIX))
 def predict(frame, step, history, fields, clock, mesh, weights, guess, work, shape):
-    """Extrapolate the last ``history`` shapes to the new frame, as seen riding on the edge."""
+    """Extrapolate the last ``history`` shapes to the new frame, as seen riding on the edge.
+
+    From a frame that stays behind a receding edge they are seen at rest.
+    """
     n = mesh.nodes.size
     speed = 0.0
-    if history > 1:
+    if history > 1 and not (frame == clock.frame and clock.edge < clock.edge_earlier):
         speed = (clock.edge - clock.edge_earlier) / clock.taken
     frames = (clock.frame, clock.frame_earlier, clock.frame_earliest)
     ago = (step, step + clock.taken, step + clock.taken + clock.taken_earlier)
@@ -161,7 +167,7 @@ def propose(
     recall(background, time, frame, parameters.retardation, mesh.nodes, work.shifting, work.old)
     compliance = displace_by_memory(
         parameters.compliance, work.weights, work.load_earlier[0], work.past[0], work.past[1:],
-        work.old, work.v,
+        work.old, work.left, work.v,
     )  # fmt: skip
     raise_tip(profile, parameters.tip, mesh, frame, work.scratch, work.tip, work.rise)
     h0 = height(time, parameters.height)

@@ -8,16 +8,9 @@ import numpy as np
 
 from softafm.errors import DivergedError
 from softafm.instrument.lever import Lever
-from softafm.instrument.motion import (
-    Motion,
-    Turning,
-    bound_speed,
-    count_periods,
-    find_setpoint,
-    is_steady,
-)
+from softafm.instrument.motion import Motion, Turning, bound_speed, count_periods, find_setpoint
 from softafm.solvers.energy.doubts import list_doubts, suggest_longer_range
-from softafm.solvers.energy.fall import creep_down
+from softafm.solvers.energy.fall import creep_down, is_jump
 from softafm.solvers.energy.layout import (
     DEFORMATION,
     FALL,
@@ -36,10 +29,9 @@ from softafm.solvers.energy.tuning import (
     AFTER_A_BREAK,
     FEWEST_STEPS,
     FINEST_TARGET,
+    FIRST_PART_OF_GAP,
     FIRST_STEP,
     FORCE_ERROR,
-    JUMP_OF_EDGE,
-    JUMP_OF_GAP,
     LAG,
     MEMORY_ERROR,
     MOST_CYCLES,
@@ -88,6 +80,7 @@ class Run:
             force=FORCE_ERROR * self.strictness,
             newton=self.surface.accuracy,
             slack=LAG,
+            held=0.0,
             finest=0.0,
             coarsest=0.0,
             most_tries=float(solver.most_steps),
@@ -102,14 +95,15 @@ class Run:
         # How well a memory can be found is limited by the errors of a cycle.
         self.steadiness = STEADY * self.strictness**0.5
         self.falls: list[float] = []
-        self.energy_before: float | None = None
+        self.jumps: list[float] = []
+        self.gained = 0.0
+        self.stored = 0.0, 0.0
 
     def steps(self) -> Iterator[float]:
         """Run, yielding the fraction of the motion done at every return of the compiled loop."""
         surface = self.surface
         self._settle()
-        if not is_steady(self.motion):
-            self.energy_before = surface.stored_energy()
+        self.stored = surface.stored_energy(), 0.0
         trigger = self._trigger(-np.inf)
         if surface.clock["force"] >= trigger:
             raise ValueError(
@@ -144,6 +138,7 @@ class Run:
                 if outcome == TRIGGERED:
                     self._turn()
                 yield (surface.time - first) / (self.breaks[-1] - first)
+        self.stored = self.stored[0], surface.stored_energy()
 
     def cycles(self) -> Iterator[float]:
         """Run the motion over and over, until the memory ends a cycle as it began it.
@@ -160,9 +155,12 @@ class Run:
         for self.cycle in range(1, MOST_CYCLES + 1):
             self.count = 0
             self.falls.clear()
+            self.jumps.clear()
+            self.gained = 0.0
             if self.shapes is not None:
                 self.shapes.clear()
             yield from self.steps()
+            surface.clock["widest"] = self.records[: self.count]["edge"].max()
             gained = surface.rewind(start)
             memory = np.zeros_like(gained) if memory is None else memory
             memory, off = periodic.next_start(memory, gained)
@@ -207,18 +205,25 @@ class Run:
         clock = self.surface.clock
         clock["history"] = 1
         clock["step"] = AFTER_A_BREAK * clock["taken"] or FIRST_STEP * (stop - self.surface.time)
+        speed = self._top_speed(stop)
+        if clock["edge"] > 0 and speed > 0:
+            # A first step has no past to tell the errors of its memory by.
+            part = FIRST_PART_OF_GAP * self.strictness**0.5
+            clock["step"] = min(clock["step"], part * self.surface.edge_gap / speed)
 
     def _advance(self, stop: float) -> tuple[int, np.ndarray, np.ndarray]:
         """Call the compiled loop once; return its outcome, records and shapes."""
         surface = self.surface
         finest, coarsest = surface.coarseness_allowed
-        controls = self.controls._replace(end=float(stop), finest=finest, coarsest=coarsest)
+        controls = self.controls._replace(
+            end=float(stop), finest=finest, coarsest=coarsest, held=surface.spacing_held
+        )
         records = self._free_records()
         shapes = np.empty((0 if self.shapes is None else _CHUNK, surface.mesh.nodes.size))
         outcome, count = advance(
             *surface.functions[:-1], surface.parameters, surface.background, surface.mesh,
-            surface.table, controls, surface.fields, surface.clock, surface.lever_state, records,
-            shapes, surface.room(),
+            surface.table, controls, surface.fields, surface.clock, surface.lever_state,
+            surface.lag_energy, records, shapes, surface.room(),
         )  # fmt: skip
         if outcome == TABULATE:
             surface.tabulate(float(surface.clock["wanted"]))
@@ -256,14 +261,20 @@ class Run:
         clock["time"], clock["step"] = end, 10 * self.controls.shortest_step
         self._settle()
         self.falls.append(surface.time)
-        if (
-            abs(clock["axis_gap"] - gap) > JUMP_OF_GAP * gap
-            or abs(clock["edge"] - edge) > JUMP_OF_EDGE * edge
-        ):
-            self.records[self.count - 1]["jump"] = before - surface.energy()
+        if is_jump(clock, gap, edge):
+            self._note_jump(before - surface.energy())
         else:
             # No fall but a slip: the edge is caught by nodes too far apart for a contact so slack.
             surface.target = max(surface.target / 2, FINEST_TARGET)
+
+    def _note_jump(self, released: float) -> None:
+        """Note a jump to the state just kept, by the energy that it ``released``, J.
+
+        A fall cannot gain energy: what it seems to is an error of the two shapes.
+        """
+        self.jumps.append(self.surface.time)
+        self.records[self.count - 1]["jump"] = max(released, 0.0)
+        self.gained -= min(released, 0.0)
 
     def _keep(self, records: np.ndarray, shapes: np.ndarray) -> None:
         """Keep the records just filled, shapes, and the worst coarseness of the finest mesh."""
@@ -281,7 +292,8 @@ class Run:
         """Collect what was recorded; ``seconds`` is the time the run took."""
         surface = self.surface
         records = self.records[: self.count]
-        time, jumped = records["time"], records["jump"] != 0
+        time = records["time"]
+        jumped = np.isin(time, self.jumps)
         breaks = np.flatnonzero(np.isin(time, self.breaks[1:-1]))
         fallen = np.flatnonzero(np.isin(time, self.falls))
         cuts = sorted([(i, i + 1) for i in breaks] + [(i, i) for i in fallen])
@@ -308,16 +320,11 @@ class Run:
                 "finest_spacing": surface.finest_spacing,
                 "growth": surface.growth,
                 "cycles": max(self.cycle, count_periods(self.motion)),
+                "stored_energy_start": self.stored[0],
+                "stored_energy_end": self.stored[1],
                 "wall_time": seconds,
             },
             warnings=list_doubts(self),
-            energy_stored=self._measure_stored(),
-        )
-
-    def _measure_stored(self) -> float:
-        """Return the energy stored since the start, J; a steady cycle ends as it began."""
-        return (
-            0.0 if self.energy_before is None else self.surface.stored_energy() - self.energy_before
         )
 
 

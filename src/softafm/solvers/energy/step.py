@@ -6,7 +6,7 @@ an equilibrium, and their difference, with the error of the memory, sets the len
 
 from numba import float64, int64, types
 
-from softafm.compiled.dense import multiply, multiply_rows, solve_factorised
+from softafm.compiled.dense import multiply, solve_factorised
 from softafm.compiled.functions import (
     ACCEPTANCE,
     HEIGHT,
@@ -47,11 +47,13 @@ from softafm.solvers.energy.layout import (
 from softafm.solvers.energy.memory import (
     CURVATURE,
     NEW,
+    carry_lag_energy,
     dissipated_power,
 )  # fmt: skip
 from softafm.solvers.energy.proposal import choose_step, furnish, propose
 from softafm.solvers.energy.stiffness import find_stiffness
 from softafm.solvers.energy.tuning import (
+    AS_WIDE,
     AT_TRIGGER,
     CLOSEST,
     LEAST_GROWTH,
@@ -114,7 +116,9 @@ def judge(trial, force, parameters, mesh, controls, clock, work):
 
 
 @inline
-def accept(trial, force, growth, parameters, mesh, controls, fields, clock, work, record):
+def accept(
+    trial, force, growth, parameters, mesh, controls, fields, clock, lag_energy, work, record
+):
     """Make a step's end the state, and write it into a record."""
     n, elements = mesh.nodes.size, parameters.retardation.size
     gap, frame, memory = work.newton[0, :n], trial.frame, work.past[1:]
@@ -123,7 +127,6 @@ def accept(trial, force, growth, parameters, mesh, controls, fields, clock, work
             memory[m, i] += work.weights[m, NEW] * work.load_new[i]
             work.lags[m, i] = work.load_new[i] - memory[m, i] - work.old[m, i]
             fields[MEMORY + m, i] = memory[m, i]
-    multiply_rows(work.lags, mesh.stiffness, work.strained)
     for i in range(n):
         fields[EARLIEST, i] = fields[EARLIER, i]
         fields[EARLIER, i] = fields[DEFORMATION, i]
@@ -131,6 +134,12 @@ def accept(trial, force, growth, parameters, mesh, controls, fields, clock, work
         fields[LOAD_EARLIER, i] = fields[LOAD, i]
         fields[LOAD, i] = work.load_new[i]
     edge = frame * find_radius(gap, mesh.nodes, controls.edge_gap)
+    # A contact about as wide as ever has no old rim outside its edge.
+    widest = edge >= AS_WIDE * clock.widest
+    clock.widest = max(clock.widest, edge)
+    carry_lag_energy(
+        frame, widest, work.weights, work.left, work.lags, work.strained, mesh.stiffness, lag_energy
+    )
     move_clock(clock, trial.step, frame, edge, force, work.u[n])
     clock.step = max(
         trial.step * min(MOST_GROWTH, max(LEAST_GROWTH, growth)), 0.999 * controls.shortest_step
@@ -140,14 +149,12 @@ def accept(trial, force, growth, parameters, mesh, controls, fields, clock, work
 
     record.time, record.height = clock.time, trial.height + work.u[n]
     record.force, record.edge, record.axis = force, edge, work.u[0]
-    record.loss = dissipated_power(
-        frame, parameters.compliance, parameters.retardation, work.lags, work.strained
-    )
+    record.loss = dissipated_power(parameters.compliance, parameters.retardation, lag_energy)
     # The cohesive zone as it is now: where the gap opens outside the edge.
-    record.coarseness = 0.0
+    clock.zone, record.coarseness = 0.0, 0.0
     if edge > 0.0:
-        zone = frame * find_radius(gap, mesh.nodes, controls.open_gap) - edge
-        record.coarseness = frame * mesh.edge_spacing / max(zone, 1e-9 * frame)
+        clock.zone = frame * find_radius(gap, mesh.nodes, controls.open_gap) - edge
+        record.coarseness = frame * mesh.edge_spacing / max(clock.zone, 1e-9 * frame)
     record.frame, record.jump = frame, 0.0
 
 
@@ -167,21 +174,21 @@ def move_clock(clock, step, frame, edge, force, deflection):
     types.UniTuple(int64, 2)(
         pointer_to(HEIGHT), pointer_to(PROFILE), pointer_to(PRESSURE), pointer_to(RESPONSE),
         pointer_to(ACCEPTANCE), PARAMETERS, BACKGROUND, MESH, TABLE, CONTROLS, MATRIX, CLOCK,
-        VECTOR, RECORDS, MATRIX, ROOM,
+        VECTOR, VECTOR, RECORDS, MATRIX, ROOM,
     ),
 )  # fmt: skip
 def advance(
     height, profile, law, respond, accept_force, parameters, background, mesh, table, controls,
-    fields, clock, lever_state, records, shapes, room,
+    fields, clock, lever_state, lag_energy, records, shapes, room,
 ):  # fmt: skip
     """Step the surface in time until ``controls.end``, full records, a need to remesh, TABULATE: a
     frame is wanted whose stiffness the table does not reach, or FALL: no stable shape within the
     shortest step, which is not taken.
 
-    ``fields`` (MEMORY + elements, n), ``clock`` and ``lever_state`` hold the state and are updated,
-    by accepted steps only. Every accepted step
-    fills one of ``records``, and a row of ``shapes`` (the deformation) if that has rows. Returns
-    why it stopped, and the number of steps accepted. ``room`` is overwritten.
+    ``fields`` (MEMORY + elements, n), ``clock``, ``lever_state`` and ``lag_energy`` (elements,)
+    hold the state and are updated, by accepted steps only. Every accepted step fills one of
+    ``records``, and a row of ``shapes`` (the deformation) if that has rows. Returns why it stopped,
+    and the number of steps accepted. ``room`` is overwritten.
     """
     n = mesh.nodes.size
     work = furnish(room)
@@ -230,7 +237,10 @@ def advance(
         clock.time = controls.end if step == left else clock.time + step
         accept_force(clock.time, step, clock.force, force, parameters.lever, lever_state)
         record = records[count]
-        accept(trial, force, growth, parameters, mesh, controls, fields, clock, work, record)
+        accept(
+            trial, force, growth, parameters, mesh, controls, fields, clock, lag_energy, work,
+            record,
+        )  # fmt: skip
         if shapes.shape[0] > count:
             for i in range(n):
                 shapes[count, i] = work.u[i]

@@ -9,7 +9,7 @@ from softafm.bodies.mesh import UnitMesh, unit_mesh
 from softafm.bodies.stiffness import STEP, Stiffness
 from softafm.errors import DivergedError
 from softafm.instrument.lever import Lever
-from softafm.instrument.motion import Motion
+from softafm.instrument.motion import Motion, is_steady
 from softafm.solvers.energy.descent import descend
 from softafm.solvers.energy.equilibrium import raise_tip, tip_force
 from softafm.solvers.energy.frame import choose_frame, find_radius, transfer
@@ -35,8 +35,13 @@ from softafm.solvers.energy.tuning import (
     COARSEST_SPACING,
     EQUILIBRIUM_ERROR,
     EXTENT,
+    FAR_SOFTER,
     FINER_THAN_NEEDED,
     GROWTH,
+    HARDLY_MOVED,
+    HARDLY_SOFTER,
+    HELD,
+    HELD_IF_FAR_SOFTER,
     SLACK,
     SLOWEST_GROWTH,
     SPACING,
@@ -85,6 +90,8 @@ class Surface:
         slack = max(1.0, tabor / SLACK)
         finer = min(2.0, max(1.0, slack / 4))
         self.target = SPACING * strictness**0.2 / max(1.0, sharpness) / finer
+        duration = inf if is_steady(motion) else breaks[-1] - breaks[0]
+        self.held = choose_spacing_held(self.parameters, duration)
         self.growth = max(SLOWEST_GROWTH, GROWTH * slack**-0.45) * min(1.0, strictness**0.17)
         self.finest_level = max(0, ceil(log2(COARSEST_SPACING / finest_spacing)))
         self.level = self.first_level = self._find_level(0.4 * contact.open_width / self.open_frame)
@@ -95,10 +102,12 @@ class Surface:
         elements = self.parameters.retardation.size
         self._rooms: dict[tuple[int, int, int], Room] = {}
         self.fields = np.zeros((MEMORY + elements, self.mesh.nodes.size))
+        self.lag_energy = np.zeros(elements)
         self.clock = new_clock()
         self.clock["time"] = breaks[0]
         self.clock["contraction"] = 0.0 if slack < 2 else np.inf
-        first = contact.contact_radius(float(motion.height(breaks[0])))
+        # The flat relaxed surface answers the first instant with its short-term modulus.
+        first = contact.contact_radius_instantaneous(float(motion.height(breaks[0])))
         self.clock["frame"] = choose_frame(first, self.open_frame)
         self.background = Background(np.empty((0, 0)), 1.0, 1.0, 1.0, 1.0, 0.0, 0.0)
         self.clock["force_scale"] = contact.force_scale
@@ -155,6 +164,11 @@ class Surface:
         if size not in self._rooms:
             self._rooms[size] = new_room(*size)
         return self._rooms[size]
+
+    @property
+    def spacing_held(self) -> float:
+        """Spacing of the nodes under a receding edge, in zones, up to which the frame stays."""
+        return self.held * self.target
 
     @property
     def coarseness_allowed(self) -> tuple[float, float]:
@@ -255,19 +269,21 @@ class Surface:
             raise DivergedError(f"no stable surface found at height {h0:g} m")
         u, clock["deflection"] = unknowns[:-1], unknowns[-1]
         self.fields[DEFORMATION] = u
-        self.fields[LOAD] = (v - u) / instantaneous
+        load = (v - u) / instantaneous
+        strained = frame * mesh.stiffness @ (load - self.fields[LOAD])
+        self.lag_energy += (0.5 * (load + self.fields[LOAD]) - memory) @ strained
+        self.fields[LOAD] = load
         gap = base + clock["deflection"] - u
         law(gap, self.parameters.law, pressure, scratch, n)
         force = tip_force(pressure, gap, rise, mesh, frame, law, self.parameters.law, far_work)
         edge = frame * find_radius(gap, mesh.nodes, self.edge_gap)
         zone = frame * find_radius(gap, mesh.nodes, self.open_gap) - edge
-        lag = self.fields[LOAD] - memory
-        rates = elements / self.parameters.retardation
         clock["frame_earlier"] = clock["frame_earliest"] = frame
         clock["edge"], clock["axis_gap"], clock["force"] = edge, gap[0], force
+        clock["zone"] = zone if edge else 0.0
         clock["force_scale"] = max(clock["force_scale"], abs(force))
         clock["history"] = 1
-        loss = 2 * np.pi * frame * rates @ np.sum((lag @ mesh.stiffness) * lag, axis=1)
+        loss = 4 * np.pi * (elements / self.parameters.retardation) @ self.lag_energy
         spacing = frame * mesh.edge_spacing
         coarseness = spacing / max(zone, 1e-9 * frame) if edge else 0.0
         height = h0 + clock["deflection"]
@@ -290,15 +306,37 @@ class Surface:
         near = frame**2 * mesh.masses @ density(frame * mesh.nodes, self.fields[DEFORMATION])
         end = frame * mesh.nodes[-1]
         r = 2 * end / (1 + _POINTS)
-        beyond = np.sum(_WEIGHTS * density(r, 0.0) * r**3 / (2 * end))
+        # There the surface is as high as at the last node, as for the force: in a wide dent the tip
+        # would be inside one that is flat.
+        level = self.fields[DEFORMATION][-1]
+        beyond = np.sum(_WEIGHTS * density(r, level) * r**3 / (2 * end))
         bending = 0.5 * self.lever.stiffness * deflection**2 if self.bends else 0.0
         return float(elastic + bending + 2 * np.pi * (near + beyond))
 
     def stored_energy(self) -> float:
-        """Energy that surface and lever hold, that of the springs of all elements included, J."""
-        memory, elements = self.memory(), self.parameters.compliance[1:]
-        springs = elements @ np.sum((memory @ self.mesh.stiffness) * memory, axis=1)
-        return self.energy() + float(np.pi * self.clock["frame"] * springs)
+        """Energy stored in sample, surfaces and lever, J.
+
+        That of ``energy``, and ½ J_m ⟨y_m, K⁻¹ y_m⟩ of the elements. Old rims in y_m may lie on
+        coarse nodes; as y_m is q less a lag, ⟨q, K⁻¹ (y_m − ½ q)⟩ and the energy of the lag is the
+        same, but of elements that have hardly moved a small difference.
+        """
+        load, memory, frame = self.fields[LOAD], self.memory(), self.clock["frame"]
+        summed = 0.5 * frame * np.sum((memory @ self.mesh.stiffness) * memory, axis=1)
+        carried = frame * (memory - 0.5 * load) @ self.mesh.stiffness @ load + self.lag_energy
+        elements = np.where(summed < HARDLY_MOVED * self.lag_energy, summed, carried)
+        return self.energy() + float(2 * np.pi * self.parameters.compliance[1:] @ elements)
+
+
+def choose_spacing_held(parameters: Parameters, duration: float) -> float:
+    """Return the spacing under a receding edge, in that aimed at, up to which the frame stays.
+
+    By how much softer the sample gets in a ``duration``, s: one that does not has no memory.
+    """
+    elements, times = parameters.compliance[1:], parameters.retardation
+    softened = -elements @ np.expm1(-duration / times) / parameters.compliance[0]
+    if softened < HARDLY_SOFTER:
+        return 0.0
+    return HELD if softened < FAR_SOFTER else HELD_IF_FAR_SOFTER
 
 
 def find_gap_origin(contact: Any) -> float:

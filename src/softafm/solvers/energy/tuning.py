@@ -58,6 +58,12 @@ RINGING = 0.7
 DAMPING = 1.5
 """Part of the quadratic's correction that damps it, with the other sign (same test)."""
 
+AS_WIDE = 0.95
+"""Edge, in the widest so far, from which the memory has no old rim far outside it."""
+
+HARDLY_MOVED = 1e-2
+"""Energy of an element, in that of its lag, below which it is summed up as it is."""
+
 # The frame that rides on the contact edge.
 
 OPENING = 1.5
@@ -72,6 +78,16 @@ AT_REST = 0.2
 LAG = 2.0
 """How far the edge moves, in edge spacings, while the frame catches up with it: at once, slack
 contacts amplify the change of mesh (``softafm docs performance``, "What did not help")."""
+
+HELD, HELD_IF_FAR_SOFTER = 1.3, 2.6
+"""Spacing of the nodes, in that aimed at, up to which they resolve an edge that recedes over them,
+so that the frame of a sample with memory stays; the second one if it gets ``FAR_SOFTER`` in the
+motion, as a Kelvin-Voigt solid does, and parts from the tip evenly. Half of the first leaves such a
+solid chasing an edge that is none, twice costs 2 % of the loop of a slow curve on polyethylene
+(tests/test_slow_and_soft.py)."""
+
+HARDLY_SOFTER, FAR_SOFTER = 1e-3, 1e3
+"""Compliance gained in a motion, in instantaneous ones: there is no memory; it is all memory."""
 
 SMALLEST_FRAME = 0.5
 """Smallest frame, in frames of the shape before: interpolation needs the same nodes in both."""
@@ -143,8 +159,9 @@ FIRST_STEP = 0.005
 """First step of a motion, in times to the first stop; tests/test_reproducible.py varies it from a
 thousandth to three times that, and V and E change by 2e-4 at most."""
 
-AFTER_A_BREAK = 0.1
-"""First step after a break of the motion, in units of the last one before it."""
+AFTER_A_BREAK, FIRST_PART_OF_GAP = 0.1, 0.03
+"""First step after a break of the motion: in units of the last one before it, and, in contact, in
+which the tip may move by a part of the gap at the edge, at a tolerance of 1e-2."""
 
 SHORTEST_STEP = 1e-4
 """Shortest step before a fall, in retardation times or the time in which the tip crosses the gap of
@@ -199,3 +216,6 @@ SLACKEST = 18.0
 SHARPEST = 3.2
 """Sharpness of a law beyond which an edge may catch on the nodes (``benchmarks/every_contact.py``:
 Dugdale's law with less smoothing than 0.07 is up to 2 % off)."""
+
+LEAST_ENERGY = 0.02
+"""Energy that still counts, in largest forces times reaches of the surface law."""
