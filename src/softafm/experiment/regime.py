@@ -9,8 +9,14 @@ import numpy as np
 from softafm.draw.summary import describe_misfit, describe_regularisation, describe_slowing
 from softafm.experiment.run import Source, make_experiment
 from softafm.experiment.scales import Regime
+from softafm.instrument.motion import is_steady
 from softafm.instrument.motions import find_lowest_height
 from softafm.modes import MODES, Foreseen, Row
+from softafm.modes.parting import (
+    estimate_parting_height,
+    estimate_work_at_speed,
+    round_up,
+)
 from softafm.modes.start import regularise_contact
 from softafm.results.datasets import compute_edge_slowing
 from softafm.rheology.represented import Represented
@@ -21,6 +27,7 @@ from softafm.units.quantities import write_quantity
 if TYPE_CHECKING:
     from softafm.contact import Contact
     from softafm.experiment.config import Experiment
+    from softafm.instrument.motion import Motion
 
 _CHECKED, _TENTH = 4, 2.8
 """By experience: runs that one with its check is worth, and one with a tenth of the tolerance."""
@@ -87,6 +94,7 @@ def list_rows(experiment: "Experiment") -> list[Row]:
     found.append(Row("contact radius", write_quantity(radius, "m"), words))
     if bends:
         _add_lever(found, contact, experiment.cantilever.stiffness, radius)
+    _add_end(found, contact, motion, experiment.cantilever.stiffness if bends else None)
     found += case.rows
     found.append(Row(f"time of the {case.noun}", write_quantity(duration, "s"), ""))
     _add_sample(found, contact, duration, case.noun)
@@ -239,6 +247,20 @@ def _add_lever(found: list[Row], contact: "Contact", lever: float, radius: float
         share = stiffness / (stiffness + lever)
         words = f"2·E·a, {_name_slow_modulus(contact)}; lever bends by {share:.0%} of the way"
         found.append(Row("contact stiffness", write_quantity(stiffness, "N/m"), words))
+
+
+def _add_end(
+    found: list[Row], contact: "Contact", motion: "Motion", stiffness: float | None
+) -> None:
+    """Show that a motion is over before the tip has parted."""
+    height = float(motion.height(motion.breaks[-1]))
+    if not contact.adhesive or is_steady(motion) or find_lowest_height(motion) >= contact.reach:
+        return
+    work = estimate_work_at_speed(contact, motion.top_speed)
+    parted = estimate_parting_height(contact, work, stiffness)
+    if height < parted:
+        words = f"the tip parts at about {write_quantity(round_up(parted), 'm')}: start there"
+        found.append(Row("end of the motion", write_quantity(height, "m"), words))
 
 
 def _describe_tabor(tabor: float) -> str:

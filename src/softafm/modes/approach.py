@@ -20,6 +20,7 @@ from softafm.instrument.cantilever import Cantilever
 from softafm.instrument.motions import Sine
 from softafm.instrument.oscillator import Drive
 from softafm.modes.amplitude_curve import BRANCHES, AmplitudeCurve, Solutions
+from softafm.modes.audit import Audit, audit, write_audits
 from softafm.modes.driven import (
     AmplitudeSweep,
     doubt_sine,
@@ -118,12 +119,15 @@ def _simulate(inputs: Inputs, settings: Settings) -> Outcome:
     drive, frequency = make_drive(inputs.cantilever, free_amplitude, sweep.drive_frequency)
 
     doubts: list[Placed] = []
+    audits: list[Audit] = []
 
     def tap(amplitude: float, approach: float) -> np.ndarray:
         warned: list[AccuracyWarning] = []
         with collect_warnings(warned):
             motion = Sine(amplitude + approach, amplitude, frequency, "steady")
             history = solve(solver, contact, motion, tolerance=tolerance)
+        audits.append(audit(contact, history, tolerance))
+        warned += audits[-1].problems
         doubts.extend(((amplitude, approach), warning) for warning in warned)
         found = observe_taps(contact, motion, history)
         return np.array([found[name] for name in OBSERVABLES])
@@ -151,7 +155,10 @@ def _simulate(inputs: Inputs, settings: Settings) -> Outcome:
     }
     parts = {**inputs.parts, "motion": motion}
     data, coordinates = _make_tables(curve, ratios, found)
-    return Outcome(parts, solver, tolerance, data, coordinates, tuple(warned), {"taps": taps.taps})
+    return Outcome(
+        parts, solver, tolerance, data, coordinates, tuple(warned), {"taps": taps.taps},
+        write_audits(audits),
+    )  # fmt: skip
 
 
 def _describe_place(tap: tuple[float, float]) -> str:

@@ -84,14 +84,14 @@ def observe_ramp(contact: Contact, motion: Any, history: History) -> dict[str, A
 
 def measure_ramp(history: History, path: np.ndarray) -> dict[str, Any]:
     """Return the scalars of a force curve; ``path`` (n,), m, is the motion as carried out."""
-    force = history.force
+    force, energies = history.force, history.energies()
     lowest = history.time[np.argmin(path)]
     return {
         "force_max": history.extreme(force, 1),
         "force_min": history.extreme(force, -1),
         "force_min_approach": history.extreme(force, -1, stop=lowest),
-        "loop_energy": -history.integrate(force, history.motion.velocity),
-        "viscous_loss": history.integrate(history.viscous_power, np.ones_like),
+        "loop_energy": energies.best,
+        "viscous_loss": energies.viscous,
     }
 
 

@@ -6,9 +6,11 @@ from inspect import Parameter, signature
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
+from softafm.checks.callers import warn_caller
 from softafm.checks.refusals import show, suggest
 from softafm.contact import Contact
 from softafm.instrument.cantilever import Cantilever
+from softafm.modes.audit import audit
 from softafm.modes.check import compare_with_finer, plan_finer_run
 from softafm.modes.mode import MODES, Mode
 from softafm.modes.parts import Inputs, Outcome, Settings
@@ -103,8 +105,13 @@ def simulate(mode: Mode, inputs: Inputs, settings: Settings) -> Outcome:
     assert mode.observe is not None
     values = mode.observe(contact, motion, history)
     refuse_strange(mode, values)
+    audited = audit(contact, history, tolerance, **lever)
+    for warning in audited.problems:
+        warn_caller(warning)
     observed = {name: (mode.observables[name].dims, each) for name, each in values.items()}
     data = {name: data[name] for name in HISTORY} | observed | data  # shapes of the surface last
+    warnings = (*history.warnings, *audited.problems)
     return Outcome(
-        inputs.parts, solver, tolerance, data, coordinates, history.warnings, history.diagnostics
-    )
+        inputs.parts, solver, tolerance, data, coordinates, warnings, history.diagnostics,
+        audited.write(),
+    )  # fmt: skip

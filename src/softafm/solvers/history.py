@@ -8,6 +8,7 @@ import numpy as np
 
 from softafm.errors import AccuracyWarning
 from softafm.instrument.motion import Motion
+from softafm.solvers.energies import Energies, measure_energies
 
 _POINTS, _WEIGHTS = np.polynomial.legendre.leggauss(4)
 _PARTS = np.linspace(0, 1, 64)[1:-1]
@@ -78,6 +79,9 @@ class History:
     _quadratures: dict[Any, Any] = field(
         default_factory=dict, init=False, repr=False, compare=False
     )
+    _energies: dict[Any, Energies] = field(
+        default_factory=dict, init=False, repr=False, compare=False
+    )
 
     def integrate(
         self,
@@ -98,11 +102,33 @@ class History:
             total += float(np.sum(interpolated * weight(at) * lengths))
         return total
 
+    def compare_rules(
+        self,
+        values: np.ndarray,
+        weight: Callable[[np.ndarray], Any],
+        start: float = -np.inf,
+        stop: float = np.inf,
+    ) -> tuple[float, float]:
+        """Return the integral of ``integrate``, and how far that over straight lines is from it.
+
+        Of the second one parts of positive and of negative weight count by their magnitude, as they
+        are off in opposite directions on the way down and up.
+        """
+        total, falling, rising = 0.0, 0.0, 0.0
+        for piece, at, lengths, near, basis in self._quadrature(start, stop):
+            weighted = weight(at) * lengths
+            curved = np.einsum("mpc,mc->mp", basis, values[piece][near])
+            off = (np.interp(at, self.time[piece], values[piece]) - curved) * weighted
+            total += float(np.sum(curved * weighted))
+            falling += float(off[weighted < 0].sum())
+            rising += float(off[weighted > 0].sum())
+        return total, abs(falling) + abs(rising)
+
     def _quadrature(self, start: float, stop: float) -> list[tuple[Any, ...]]:
         """Points and weights of every piece, and the cubics there: kept for the next integral."""
         from softafm.solvers.cubics import cubics
 
-        key = start, stop
+        key = max(start, self.time[0]), min(stop, self.time[-1])
         if key not in self._quadratures:
             rules = self._quadratures[key] = []
             for piece in self.pieces:
@@ -117,6 +143,13 @@ class History:
                     cubics(time, at, near, basis)
                     rules.append((piece, at, half * _WEIGHTS, near, basis))
         return self._quadratures[key]
+
+    def energies(self, start: float = -np.inf, stop: float = np.inf) -> Energies:
+        """Return the ``Energies`` between two times, s, at which the motion is met by a step."""
+        key = max(start, self.time[0]), min(stop, self.time[-1])
+        if key not in self._energies:
+            self._energies[key] = measure_energies(self, *key)
+        return self._energies[key]
 
     def extreme(
         self, values: np.ndarray, sign: int, start: float = -np.inf, stop: float = np.inf
