@@ -28,6 +28,7 @@ from softafm.modes.driven import (
     make_drive,
     ratios_of,
 )
+from softafm.modes.lever_sweep import sweep_lever
 from softafm.modes.mode import Mode
 from softafm.modes.parts import Axes, Foreseen, Inputs, Outcome, Row, Settings
 from softafm.modes.perform import perform
@@ -94,7 +95,8 @@ def approach_curve(
         ``force_mean``, ``force_max``, ``force_min``, ``contact_time``, ``indentation``. Over
         ``sweep_height``, what an instrument records while Z comes down (``approach_...``) and goes
         up again (``retract_...``): ``amplitude``, ``phase`` and the same observables; NaN where
-        the amplitude leaves the range of ``amplitude_ratio``. All SI but the phase.
+        the amplitude leaves the range of ``amplitude_ratio``. The retract starts from the last
+        height at which the approach is known. All SI but the phase.
 
     Raises
     ------
@@ -228,7 +230,7 @@ def _make_tables(
     heights = found.amplitude + found.approach
     sweep = np.linspace(heights.max(), heights.min(), _HEIGHTS) if heights.size else heights
     names = ("amplitude", "phase", *OBSERVABLES)
-    for label, values in zip(("approach", "retract"), curve.swept(sweep), strict=True):
+    for label, values in zip(("approach", "retract"), sweep_lever(curve, sweep), strict=True):
         for name, row in zip(names, values, strict=True):
             data[f"{label}_{name}"] = ("sweep_height", row)
     coordinates: dict[str, Labelled] = {
