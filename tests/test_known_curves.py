@@ -275,7 +275,7 @@ def test_a_half_sine_of_a_power_law_leads_by_twelve_degrees():
     sample = sa.PowerLaw(MODULUS, 0.2, (1e-6, 1e-2), 0.5, reference_time=TIME)
     times = np.linspace(0, TIME, 2001)
     heights = -DEPTH * np.sin(pi * times / TIME)
-    path = np.insert(times, 0, -1e-6), np.insert(heights, 0, 1e-12)
+    path = sa.Trajectory(np.insert(times, 0, -1e-6), np.insert(heights, 0, 1e-12))
     curve = indentation.ting(PARABOLOID, sample, path)
     assert curve.time[-1] / TIME == pytest.approx(0.8867, abs=2e-4)
     near = np.linspace(0.42, 0.45, 301) * TIME
@@ -355,14 +355,13 @@ def test_a_solver_with_a_short_repulsion_follows_ting_for_a_cone():
     assert run.force.values == pytest.approx(known.force, abs=0.015 * known.force.max())
 
 
-def test_a_curve_in_time_takes_a_motion_or_its_samples():
+def test_a_triangle_and_its_corners_give_one_curve():
     sample = make_solid()
-    corners = [0, MET + TIME, 2 * MET + 2 * TIME], [START, -DEPTH, START]
+    corners = sa.Trajectory([0, MET + TIME, 2 * MET + 2 * TIME], [START, -DEPTH, START])
     at = MET + TIME * np.linspace(-0.2, 2.2, 31)
     one = indentation.ting(PARABOLOID, sample, TRIANGLE, at)
-    for path in (corners, sa.Trajectory(*corners)):
-        other = indentation.ting(PARABOLOID, sample, path, at)
-        assert other.force == pytest.approx(one.force, abs=1e-9 * one.force.max())
+    other = indentation.ting(PARABOLOID, sample, corners, at)
+    assert other.force == pytest.approx(one.force, abs=1e-9 * one.force.max())
     assert one.depth == pytest.approx(-TRIANGLE.height(at), abs=1e-15)
     assert one.force[0] == one.force[-1] == one.contact_radius[-1] == 0
     # A body of one sample is that sample.
@@ -374,7 +373,9 @@ def test_a_sine_is_followed_as_closely_as_its_samples():
     motion, sample = sa.Sine(-2e-9, 10e-9, 200.0), make_solid()
     curve = indentation.ting(PARABOLOID, sample, motion)
     times = np.linspace(0, 1 / 200, 4001)
-    fine = indentation.ting(PARABOLOID, sample, (times, motion.height(times)), curve.time[5:-5])
+    fine = indentation.ting(
+        PARABOLOID, sample, sa.Trajectory(times, motion.height(times)), curve.time[5:-5]
+    )
     assert curve.force[5:-5] == pytest.approx(fine.force, abs=2e-5 * fine.force.max())
 
 
@@ -382,12 +383,10 @@ def test_a_sine_is_followed_as_closely_as_its_samples():
     ("motion", "said"),
     [
         (sa.Triangle(9e-9, 1e-9, 1e-6), r"lowest height is 1e-09 m; must come below the surface"),
-        (([0, 1, 2], [-1e-9, -2e-9, 1e-9]), r"begins 1e-09 m below the surface"),
+        (sa.Trajectory([0, 1, 2], [-1e-9, -2e-9, 1e-9]), r"begins 1e-09 m below the surface"),
         (sa.Sine(0.0, 1e-8, 1e3, cycles=2), r"reverses at .* s; must press in once"),
         (sa.Sine(0.0, 1e-8, 1e3, cycles="steady"), r"must be one dent in a surface at rest"),
         (sa.Triangle(9e-9, -9e-9, 1e-6, setpoint_force=1e-9), r"turns at a force of 1e-09 N"),
-        (([0, 1], [1e-9, -2e-9], [0, 0]), r"has 3 entries: must be a motion, or a pair"),
-        ([[0, 1, 2.0], [1e-9, -9e-9]], r"have shapes \(3,\) and \(2,\)"),
         (1.0, r"must be a motion such as softafm.Triangle"),
     ],
 )
@@ -400,7 +399,7 @@ def test_a_surface_that_comes_back_faster_than_the_tip_is_refused():
     times = [0, MET + TIME, MET + 1.2 * TIME, MET + 9 * TIME, MET + 10 * TIME]
     heights = [START, -DEPTH, -0.7 * DEPTH, -0.7 * DEPTH, START]
     with pytest.raises(ValueError, match=r"more slowly than the surface comes back"):
-        indentation.ting(PARABOLOID, make_solid(), (times, heights))
+        indentation.ting(PARABOLOID, make_solid(), sa.Trajectory(times, heights))
 
 
 @dataclass(frozen=True)

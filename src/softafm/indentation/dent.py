@@ -1,11 +1,9 @@
 """One dent: how deep a tip is from where it meets the surface to where it leaves it."""
 
-from collections.abc import Sequence
 from itertools import pairwise
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from softafm.checks.kinds import members, refuse_incomplete
 from softafm.instrument.motion import Motion, find_setpoint, is_steady
@@ -18,9 +16,6 @@ _STRAIGHT = 1e-9
 """Distance from a straight line that counts as none, over the range of the motion."""
 _SAME = 1e-9
 """Change of speed, over the largest, and way back, over the largest depth, that is round-off."""
-
-Path = Motion | Sequence[ArrayLike]
-"""A motion, or the pair of its times (s) and heights (m), straight between them."""
 
 
 class Dent(NamedTuple):
@@ -48,7 +43,7 @@ class Dent(NamedTuple):
         return np.concatenate([[0], np.flatnonzero(jump) + 1, [self.time.size - 1]])
 
 
-def find_dent(motion: Path) -> Dent:
+def find_dent(motion: Motion) -> Dent:
     """Return the dent that a motion makes.
 
     Raises
@@ -103,15 +98,8 @@ def _cut(
     return times[kept], depths[kept]
 
 
-def _sample(motion: Any) -> tuple[np.ndarray, np.ndarray]:
+def _sample(motion: Motion) -> tuple[np.ndarray, np.ndarray]:
     """Return times (s) and heights (m) of a motion, between which it is straight or nearly so."""
-    if isinstance(motion, tuple | list | np.ndarray):
-        if len(motion) != 2:
-            raise ValueError(
-                f"motion has {len(motion)} entries: must be a motion, or a pair (times in s, "
-                "heights in m)"
-            )
-        motion = Trajectory(*motion)
     refuse_incomplete("motion", motion, members(Motion), "a motion such as softafm.Triangle")
     if is_steady(motion):
         raise ValueError(
@@ -120,7 +108,7 @@ def _sample(motion: Any) -> tuple[np.ndarray, np.ndarray]:
     if find_setpoint(motion) is not None:
         raise ValueError(
             f"motion: turns at a force of {find_setpoint(motion):g} N, which depends on the run; "
-            "must be without, such as the pair (times, heights) of its result"
+            "must be without, such as Trajectory(time, tip_height) of its result"
         )
     if isinstance(motion, Trajectory) and not motion.smooth and motion.noise is None:
         return motion.time, motion.heights

@@ -14,14 +14,15 @@ from numpy.typing import ArrayLike
 
 from softafm.checks.validate import check_numbers
 from softafm.indentation.curve import Curve
-from softafm.indentation.dent import Path, find_dent
+from softafm.indentation.dent import find_dent
 from softafm.indentation.springs import Springs, integrate_modulus
+from softafm.instrument.motion import Motion
 
 if TYPE_CHECKING:
     from softafm.tips import Tip
 
 
-def lee_radok(tip: "Tip", sample: Any, motion: Path, time: ArrayLike | None = None) -> Curve:
+def lee_radok(tip: "Tip", sample: Any, motion: Motion, time: ArrayLike | None = None) -> Curve:
     """Force on a tip that presses into a viscoelastic sample, without adhesion, up to its turn.
 
     Parameters
@@ -58,7 +59,7 @@ def lee_radok(tip: "Tip", sample: Any, motion: Path, time: ArrayLike | None = No
     return springs.follow(tip, np.nextafter(back, np.inf), time)
 
 
-def ting(tip: "Tip", sample: Any, motion: Path, time: ArrayLike | None = None) -> Curve:
+def ting(tip: "Tip", sample: Any, motion: Motion, time: ArrayLike | None = None) -> Curve:
     """Force on a tip that presses into a viscoelastic sample and withdraws, without adhesion.
 
     The contact ends before the tip is back at the surface, which recovers more slowly.
@@ -71,10 +72,9 @@ def ting(tip: "Tip", sample: Any, motion: Path, time: ArrayLike | None = None) -
         Any linear viscoelastic sample, e.g. ``softafm.StandardLinearSolid``, of constant Poisson's
         ratio. A ``PowerLaw`` is the law itself, not the chain that stands for it in solvers.
     motion
-        E.g. ``softafm.Triangle``, or the pair of its times (s) and heights (m), straight in
-        between: from above the surface at 0 m, which is flat and at rest, in once and out. It may
-        dwell, and vary its speed. A curved one is taken as 400 straight pieces between its breaks
-        and landmarks.
+        E.g. ``softafm.Triangle``, or a ``softafm.Trajectory`` of any heights: from above the
+        surface at 0 m, which is flat and at rest, in once and out. It may dwell, and vary its
+        speed. A curved one is taken as 400 straight pieces between its breaks and landmarks.
     time
         Instants, s, shape (n,); by default some 100 between corners of the motion, from the
         beginning of the contact to its end, both included.
