@@ -62,9 +62,8 @@ class Springs:
         self.dent, self.growth = dent, growth
         self.met = dent.time[: dent.turn + 1]
 
-    def follow(self, tip: "Tip", over: float, time: ArrayLike | None) -> Curve:
+    def follow(self, tip: "Tip", over: float, times: np.ndarray) -> Curve:
         """Return the force on a tip at instants until and after the contact is over, s."""
-        times = self._choose_times(over) if time is None else self._check_times(time)
         depths = make_depths(tip, float(self.dent.depth.max()))
         touching = (times > self.met[0]) & (times < over)
         radius, force = np.zeros(times.shape), np.zeros(times.shape)
@@ -157,7 +156,7 @@ class Springs:
         met = np.clip(met, self.met[piece], np.minimum(self.met[piece + 1], now))
         return 2 * np.sum(weight * self._find_load(now, loads, piece, met), axis=1)
 
-    def _choose_times(self, over: float) -> np.ndarray:
+    def choose_times(self, over: float) -> np.ndarray:
         """Return times of a curve, s: dense where the motion has corners, and the contact ends."""
         corners = self.dent.time[self.dent.corners]
         corners = np.append(corners[corners < over], over)
@@ -165,7 +164,8 @@ class Springs:
         parts = [start + (end - start) * grades for start, end in pairwise(corners)]
         return np.unique(np.concatenate(parts))
 
-    def _check_times(self, time: ArrayLike) -> np.ndarray:
+    def check_times(self, time: ArrayLike) -> np.ndarray:
+        """Return times of the motion, s; ValueError if one does not lie in it."""
         times = np.array(check_numbers("time", time, "s"))
         first, last = self.dent.whole[0][[0, -1]]
         outside = (times < first) | (times > last)

@@ -12,7 +12,6 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from softafm.checks.validate import check_numbers
 from softafm.indentation.curve import Curve
 from softafm.indentation.dent import find_dent
 from softafm.indentation.springs import Springs, integrate_modulus
@@ -50,13 +49,13 @@ def lee_radok(tip: "Tip", sample: Any, motion: Motion, time: ArrayLike | None = 
     """
     springs = Springs(find_dent(motion), integrate_modulus(sample))
     back = float(springs.dent.time[springs.dent.back])
-    latest = back if time is None else max(check_numbers("time", time, "s"), default=back)
-    if latest > back:
+    times = springs.choose_times(back) if time is None else springs.check_times(time)
+    if np.any(times > back):
         raise ValueError(
-            f"time = {latest:g} s: must not be after {back:g} s, when the motion turns back and "
-            "the contact shrinks; ting goes on"
+            f"time = {times.max():g} s: must not be after {back:g} s, when the motion turns back "
+            "and the contact shrinks; ting goes on"
         )
-    return springs.follow(tip, np.nextafter(back, np.inf), time)
+    return springs.follow(tip, np.nextafter(back, np.inf), times)
 
 
 def ting(tip: "Tip", sample: Any, motion: Motion, time: ArrayLike | None = None) -> Curve:
@@ -96,4 +95,6 @@ def ting(tip: "Tip", sample: Any, motion: Motion, time: ArrayLike | None = None)
     which the contact was as wide before, ∫ E*(t − s) dδ(s) = 0 from t1 to t.
     """
     springs = Springs(find_dent(motion), integrate_modulus(sample))
-    return springs.follow(tip, springs.find_end(), time)
+    over = springs.find_end()
+    times = springs.choose_times(over) if time is None else springs.check_times(time)
+    return springs.follow(tip, over, times)
