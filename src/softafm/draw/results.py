@@ -10,10 +10,14 @@ from softafm.checks.kinds import check_list
 from softafm.draw.approach import draw_approach_curve
 from softafm.draw.panels import draw_panels
 from softafm.draw.reference import NAME as REFERENCE
-from softafm.draw.reference import draw_curve
+from softafm.draw.reference import draw_references, list_references
 from softafm.draw.style import COLOURS, choose_labels
+from softafm.indentation import Curve
 from softafm.modes import MODES
 from softafm.results.content import MAPS
+
+Reference = str | Curve | tuple[ArrayLike, ArrayLike]
+"""A known answer, by name or as it was computed, or tip heights and forces."""
 
 __all__ = ["COLOURS", "plot"]
 
@@ -21,7 +25,7 @@ __all__ = ["COLOURS", "plot"]
 def plot(
     datasets: xr.Dataset | Sequence[xr.Dataset],
     labels: Sequence[str] | None = None,
-    reference: xr.Dataset | tuple[ArrayLike, ArrayLike] | None = None,
+    reference: xr.Dataset | Reference | Sequence[Reference] | None = None,
 ) -> Figure:
     """Draw one result, or several of the same mode over each other.
 
@@ -32,10 +36,13 @@ def plot(
     labels
         A name for each dataset, shown in the legend; "run 1", "run 2", ... by default.
     reference
-        What to compare them with: one more result of the same mode, or a closed form of force
-        against tip height, as a pair of heights (m) and forces (N), such as
-        ``(-indentation.depth(tip, a), indentation.load(tip, a, modulus))``. It is drawn as a dotted
-        line, within the range of the results.
+        What to compare them with: one more result of the same mode; or, where force is drawn
+        against tip height, a known answer of ``softafm.indentation``: by name, ``"hertz"``,
+        ``"dmt"``, ``"jkr"``, ``"maugis"``, ``"lee-radok"`` or ``"ting"``, for the contact and the
+        motion of each result; as a ``Curve``; or as a pair of heights (m) and forces (N). Several
+        are given in a list. They are drawn within the range of the results. Answers by name are
+        counted from where the surfaces rest on each other, at a gap of no pressure or, of a law
+        that only repels, of the mean pressure; curves and pairs are drawn as they are.
 
     Returns
     -------
@@ -49,7 +56,8 @@ def plot(
     ------
     ValueError
         If there is nothing to draw, if the modes differ or have no figure, if the number of
-        labels is not that of datasets, or if the figure cannot show the reference.
+        labels is not that of datasets, if the figure cannot show the reference, or if a known
+        answer does not suit the contact.
     """
     runs = check_list("datasets", datasets, xr.Dataset, "a result of softafm, an xarray.Dataset")
     names = choose_labels("dataset", runs, labels, (f"run {i + 1}" for i in range(len(runs))))
@@ -57,7 +65,8 @@ def plot(
         return _plot([*runs, reference], [*names, REFERENCE])
     figure = _plot(runs, names)
     if reference is not None:
-        draw_curve(figure, str(runs[0].attrs["mode"]), runs, reference)
+        mode = str(runs[0].attrs["mode"])
+        draw_references(figure, mode, runs, list_references(reference))
     return figure
 
 

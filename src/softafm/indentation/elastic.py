@@ -1,9 +1,4 @@
-"""Elastic indentation by any axisymmetric tip, in closed form: to plot beside a result.
-
-The contact is elastic, without friction, and of small slopes: the half-space deforms as under
-pressures on a flat surface, for these solutions as in the solvers. Results of a solver approach
-them where surface forces act over distances much shorter than the indentation.
-"""
+"""Elastic indentation by any tip of revolution, without adhesion."""
 
 from math import pi
 from typing import TYPE_CHECKING
@@ -11,7 +6,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import ArrayLike
 
-from softafm.checks.validate import check_positive, refuse_masked
+from softafm.checks.validate import check_positive
+from softafm.indentation.check import check_modulus, check_not_negative
 
 if TYPE_CHECKING:
     from softafm.tips import Tip
@@ -35,7 +31,7 @@ def depth(tip: "Tip", contact_radius: ArrayLike) -> np.ndarray:
     ----------
     I. N. Sneddon, *Int. J. Eng. Sci.* 3, 47 (1965).
     """
-    radius = _check_not_negative("contact_radius", contact_radius)
+    radius = check_not_negative("contact_radius", contact_radius)
     return (radius * _average_slopes(tip, radius)[0])[()]
 
 
@@ -53,42 +49,8 @@ def load(tip: "Tip", contact_radius: ArrayLike, modulus: float) -> np.ndarray:
     ----------
     I. N. Sneddon, *Int. J. Eng. Sci.* 3, 47 (1965).
     """
-    radius, modulus = _check_not_negative("contact_radius", contact_radius), _check_modulus(modulus)
+    radius, modulus = check_not_negative("contact_radius", contact_radius), check_modulus(modulus)
     return (2 * modulus * radius**2 * _average_slopes(tip, radius)[1])[()]
-
-
-def jkr_depth(
-    tip: "Tip", contact_radius: ArrayLike, modulus: float, work_of_adhesion: float
-) -> np.ndarray:
-    """Depth of ``tip`` in an adhesive contact with short-ranged forces, m; negative when pulled.
-
-    δ(a) − √(2πaW/E*) with δ(a) as in ``depth``, ``modulus`` E* in Pa and ``work_of_adhesion`` W in
-    J/m². Of radii with the same depth the largest is the stable one.
-
-    Raises
-    ------
-    ValueError
-        If a number is out of range.
-
-    References
-    ----------
-    K. L. Johnson, K. Kendall and A. D. Roberts, *Proc. R. Soc. Lond. A* 324, 301 (1971), for
-    spheres; D. Maugis and M. Barquins, *J. Phys. D* 16, 1843 (1983), for any profile.
-    """
-    radius = _check_not_negative("contact_radius", contact_radius)
-    return (depth(tip, radius) - _stretch(radius, modulus, work_of_adhesion))[()]
-
-
-def jkr_load(
-    tip: "Tip", contact_radius: ArrayLike, modulus: float, work_of_adhesion: float
-) -> np.ndarray:
-    """Force on ``tip`` in an adhesive contact with short-ranged forces, N; negative when pulled.
-
-    F(a) − √(8πE*Wa³) with F(a) as in ``load``; parameters, refusals and source as of ``jkr_depth``.
-    """
-    radius = _check_not_negative("contact_radius", contact_radius)
-    stretch = _stretch(radius, modulus, work_of_adhesion)
-    return (load(tip, radius, modulus) - 2 * modulus * radius * stretch)[()]
 
 
 def contact_radius(tip: "Tip", depth: ArrayLike) -> np.ndarray:
@@ -133,31 +95,7 @@ def hertz_force(radius: float, depth: ArrayLike, modulus: float) -> np.ndarray:
     H. Hertz, *J. reine angew. Math.* 92, 156 (1881).
     """
     radius, deep = check_positive("radius", radius, "m"), np.maximum(np.asarray(depth, float), 0.0)
-    return (4 / 3 * _check_modulus(modulus) * radius**0.5 * deep**1.5)[()]
-
-
-def jkr_pull_off(radius: float, work_of_adhesion: float) -> float:
-    """Force at which a paraboloid parts from a soft sample under load control, −(3/2)πWR, N.
-
-    ``radius`` R in m and ``work_of_adhesion`` W in J/m², both above zero or a ValueError.
-
-    References
-    ----------
-    K. L. Johnson, K. Kendall and A. D. Roberts, *Proc. R. Soc. Lond. A* 324, 301 (1971).
-    """
-    return -1.5 * pi * check_positive("radius", radius, "m") * _check_work(work_of_adhesion)
-
-
-def dmt_pull_off(radius: float, work_of_adhesion: float) -> float:
-    """Force at which a paraboloid parts from a stiff sample, −2πWR, N.
-
-    ``radius`` R in m and ``work_of_adhesion`` W in J/m², both above zero or a ValueError.
-
-    References
-    ----------
-    B. V. Derjaguin, V. M. Muller and Y. P. Toporov, *J. Colloid Interface Sci.* 53, 314 (1975).
-    """
-    return -2 * pi * check_positive("radius", radius, "m") * _check_work(work_of_adhesion)
+    return (4 / 3 * check_modulus(modulus) * radius**0.5 * deep**1.5)[()]
 
 
 def _average_slopes(tip: "Tip", radius: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -174,24 +112,3 @@ def _average_slopes(tip: "Tip", radius: np.ndarray) -> tuple[np.ndarray, np.ndar
     sine = np.sin(middle[..., None] + half[..., None] * _POINTS)
     weighted = half[..., None] * _WEIGHTS * tip.slope(wide[..., None] * sine)
     return weighted.sum((-2, -1)), (weighted * sine**2).sum((-2, -1))
-
-
-def _stretch(radius: np.ndarray, modulus: float, work_of_adhesion: float) -> np.ndarray:
-    return np.sqrt(2 * pi * radius * _check_work(work_of_adhesion) / _check_modulus(modulus))
-
-
-def _check_modulus(value: float) -> float:
-    return check_positive("modulus", value, "Pa")
-
-
-def _check_work(value: float) -> float:
-    return check_positive("work_of_adhesion", value, "J/m²")
-
-
-def _check_not_negative(name: str, values: ArrayLike) -> np.ndarray:
-    refuse_masked(name, values)
-    array = np.asarray(values, float)
-    bad = ~(np.isfinite(array) & (array >= 0))
-    if np.any(bad):
-        raise ValueError(f"{name} = {array[bad].flat[0]:g} m: must be finite and not negative")
-    return array
