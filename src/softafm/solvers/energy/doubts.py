@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from softafm.errors import AccuracyWarning
-from softafm.solvers.energy.tuning import COARSER_THAN_NEEDED, LEAST_ENERGY, SHARPEST, SLACKEST
+from softafm.solvers.energy.tuning import COARSER_THAN_NEEDED, LEAST_ENERGY, SHARPEST
 
 if TYPE_CHECKING:
     from softafm.solvers.energy.run import Run
@@ -17,7 +17,6 @@ def list_doubts(run: "Run") -> tuple[AccuracyWarning, ...]:
     return (
         *_doubt_steadiness(run),
         *_doubt_coarseness(run),
-        *_doubt_slackness(run),
         *_doubt_sharpness(run),
         *_doubt_width(run),
         *_doubt_jumps(run),
@@ -63,19 +62,6 @@ def _doubt_coarseness(run: "Run") -> tuple[AccuracyWarning, ...]:
         f"energy may be wrong. Lower solvers.Energy(finest_spacing=...){remedy}"
     )
     return (AccuracyWarning(text, coarseness / run.target),)
-
-
-def _doubt_slackness(run: "Run") -> tuple[AccuracyWarning, ...]:
-    tabor = run.contact.tabor_instantaneous
-    if not run.contact.adhesive or tabor <= SLACKEST or len(run.falls) < 2:
-        return ()
-    text = (
-        "the contact is soft for its adhesion even when loaded fast (Tabor number "
-        f"{tabor:.3g}): beyond {SLACKEST:g} its edge catches on the nodes before it lets go. "
-        "Forces hold, but the loop energy may be wrong, by 2 % at 20 and entirely at 60; try "
-        "regularise=8"
-    )
-    return (AccuracyWarning(text, tabor),)
 
 
 def _doubt_sharpness(run: "Run") -> tuple[AccuracyWarning, ...]:

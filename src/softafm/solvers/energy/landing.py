@@ -13,6 +13,7 @@ from scipy.linalg import LinAlgError, cho_factor, cho_solve
 
 from softafm.errors import DivergedError
 from softafm.solvers.energy.equilibrium import raise_tip, tip_force
+from softafm.solvers.energy.fall import is_jump
 from softafm.solvers.energy.frame import transfer
 from softafm.solvers.energy.layout import LOAD, MEMORY, ORIGIN
 from softafm.solvers.energy.riding import ride
@@ -182,19 +183,21 @@ def land(
     """Bring a surface that has lost its hold to where it goes; return its record, None if unknown.
 
     ``before`` is its energy, J, at the start of the jump, ``touching`` whether it was in contact
-    there and so parts, or snaps in.
+    there and so may part.
     """
     kept = surface.keep()
-    surface.clock["time"] = time
-    record = _part(surface) if touching else _snap_in(surface, time)
-    if record is None or surface.energy() > before:
+    start = float(surface.clock["axis_gap"]), float(surface.clock["edge"])
+    for go in (_part, _snap_in) if touching else (_snap_in,):
+        surface.clock["time"] = time
+        record = go(surface)
+        if record and surface.energy() < before and is_jump(surface.clock, *start):
+            return record
         surface.restore(kept)
-        return None
-    return record
+    return None
 
 
-def _snap_in(surface: "Surface", time: float) -> tuple[float, ...] | None:
-    landing = Landing(surface, time)
+def _snap_in(surface: "Surface") -> tuple[float, ...] | None:
+    landing = Landing(surface, surface.time)
     try:
         found = landing.search()
     except LinAlgError:

@@ -22,8 +22,8 @@ CONSTANT_MATRIX = types.Array(float64, 2, "C", readonly=True)
 # Why `advance` came back.
 FINISHED, FULL, REMESH, FALL, STUCK, TRIGGERED, TABULATE = range(7)
 
-# Rows of `fields`: the last three shapes, the load q before and now, then one per element y_m.
-DEFORMATION, EARLIER, EARLIEST, LOAD_EARLIER, LOAD, MEMORY = range(6)
+# Rows of `fields`: the last three shapes, the last three loads q, then one per element y_m.
+DEFORMATION, EARLIER, EARLIEST, LOAD_EARLIEST, LOAD_EARLIER, LOAD, MEMORY = range(7)
 
 # Entry of the law's parameters: where its gaps are counted from. The solver's gaps are above it.
 ORIGIN = 0

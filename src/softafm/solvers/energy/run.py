@@ -266,7 +266,7 @@ class Run:
         duration = min(2.0**self.slips * self.controls.shortest_step, stop - start)
         end = stop if duration == stop - start else start + duration
         self.end_of_slip = start + SLIPS_AGAIN * duration
-        touching = edge > surface.ride_from
+        touching = edge > 0
         record = land(surface, end, before, touching) if surface.ride_from < np.inf else None
         if record is None:
             creep_down(self, end, duration)

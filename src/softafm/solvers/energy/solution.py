@@ -5,7 +5,7 @@ from softafm.compiled.functions import inline
 from softafm.solvers.energy.equilibrium import equilibrate
 from softafm.solvers.energy.layout import LOAD, LOAD_EARLIER, ORIGIN
 from softafm.solvers.energy.memory import NEW
-from softafm.solvers.energy.proposal import Trial, carry_past
+from softafm.solvers.energy.proposal import Trial, carry_past, find_extrapolation_weights
 from softafm.solvers.energy.riding import lay_phase, ride
 from softafm.solvers.energy.stiffness import find_stiffness
 from softafm.solvers.energy.tracing import trace
@@ -104,11 +104,20 @@ def solve_tracing(
 ):  # fmt: skip
     """As ``solve_riding``, with a memory that rides too."""
     n, elements = mesh.nodes.size, parameters.retardation.size
-    onward = trial.step / clock.taken if clock.rides >= 2.0 and trial.history > 1 else 0.0
+    known = min(int(clock.rides), trial.history)
     for i in range(n):
         work.shape[0, i] = work.standoff[i] + work.u[n] - work.u[i]
         work.past[0, i], work.load_earlier[0, i] = fields[LOAD, i], fields[LOAD_EARLIER, i]
-        work.load_new[i] = fields[LOAD, i] + onward * (fields[LOAD, i] - fields[LOAD_EARLIER, i])
+        work.load_new[i] = 0.0
+    find_extrapolation_weights(
+        known, trial.step, clock.taken, clock.taken_earlier, work.past_weights
+    )
+    for k in range(known):
+        for i in range(n):
+            work.load_new[i] += work.past_weights[k] * fields[LOAD - k, i]
+    find_extrapolation_weights(
+        trial.history, trial.step, clock.taken, clock.taken_earlier, work.past_weights
+    )
     spring = trial.lever * trial.frame * trial.frame
     iterations = trace(
         trial.step, trial.frame, trial.height - parameters.law[ORIGIN], spring, trial.rest,

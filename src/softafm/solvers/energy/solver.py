@@ -40,7 +40,7 @@ class Energy:
 
     kind: ClassVar[str] = "energy"
     adaptive: ClassVar[bool] = True
-    finest_spacing: float = 5e-6
+    finest_spacing: float = 1e-10
     most_steps: int = 2_000_000
 
     def __post_init__(self) -> None:

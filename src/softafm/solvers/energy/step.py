@@ -33,6 +33,7 @@ from softafm.solvers.energy.layout import (
     FULL,
     LOAD,
     LOAD_EARLIER,
+    LOAD_EARLIEST,
     MATRIX,
     MEMORY,
     MESH,
@@ -140,6 +141,7 @@ def accept(
         fields[EARLIEST, i] = fields[EARLIER, i]
         fields[EARLIER, i] = fields[DEFORMATION, i]
         fields[DEFORMATION, i] = work.u[i]
+        fields[LOAD_EARLIEST, i] = fields[LOAD_EARLIER, i]
         fields[LOAD_EARLIER, i] = fields[LOAD, i]
         fields[LOAD, i] = work.load_new[i]
     if trial.rides > 0:

@@ -83,7 +83,7 @@ HARDLY_MOVED = 1e-2
 
 # The frame that rides on the contact edge.
 
-RIDE_FROM = 0.5
+RIDE_FROM = 0.25
 """Radius of the edge, in radii of the open contact, beyond which a slack contact is solved together
 with it."""
 
@@ -249,10 +249,6 @@ STAGNANT = 8
 """Cycles in which the start must become twice as good, or all that is left are errors."""
 
 # Doubts.
-
-SLACKEST = 18.0
-"""Fast Tabor number up to which an edge lets go between nodes as it would in a continuum
-(``benchmarks/table.py``: elastic contacts at 30)."""
 
 SHARPEST = 3.2
 """Sharpness of a law beyond which an edge may catch on the nodes (``benchmarks/every_contact.py``:
