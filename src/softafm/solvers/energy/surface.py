@@ -269,8 +269,7 @@ class Surface:
         self.tabulate(float(clock["frame"]))
         height_at, profile, law, *_, potential = self.functions
         n, frame = mesh.nodes.size, clock["frame"]
-        tip, pressure, scratch = np.empty(n), np.empty(n), np.empty(n)
-        rise, far_work = np.empty(mesh.far.size), np.empty((3, mesh.far.size))
+        tip, scratch, rise = np.empty(n), np.empty(n), np.empty(mesh.far.size)
         raise_tip(profile, self.parameters.tip, mesh, frame, scratch, tip, rise)
         h0 = height_at(self.time, self.parameters.height)
         base = h0 - self.parameters.law[ORIGIN] + tip
