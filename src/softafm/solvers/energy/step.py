@@ -49,6 +49,7 @@ from softafm.solvers.energy.memory import (
     NEW,
     carry_lag_energy,
     dissipated_power,
+    gather,
 )  # fmt: skip
 from softafm.solvers.energy.proposal import choose_step, furnish, propose
 from softafm.solvers.energy.stiffness import find_stiffness
@@ -117,8 +118,9 @@ def judge(trial, force, parameters, mesh, controls, clock, work):
 
 @inline
 def accept(
-    trial, force, growth, parameters, mesh, controls, fields, clock, lag_energy, work, record
-):
+    trial, force, growth, parameters, background, mesh, controls, fields, clock, lag_energy, work,
+    record,
+):  # fmt: skip
     """Make a step's end the state, and write it into a record."""
     n, elements = mesh.nodes.size, parameters.retardation.size
     gap, frame, memory = work.newton[0, :n], trial.frame, work.past[1:]
@@ -133,6 +135,7 @@ def accept(
         fields[DEFORMATION, i] = work.u[i]
         fields[LOAD_EARLIER, i] = fields[LOAD, i]
         fields[LOAD, i] = work.load_new[i]
+    gather(background, work.weights, fields[LOAD : LOAD + 1], mesh, frame)
     edge = frame * find_radius(gap, mesh.nodes, controls.edge_gap)
     # A contact about as wide as ever has no old rim outside its edge.
     widest = edge >= AS_WIDE * clock.widest
@@ -238,8 +241,8 @@ def advance(
         accept_force(clock.time, step, clock.force, force, parameters.lever, lever_state)
         record = records[count]
         accept(
-            trial, force, growth, parameters, mesh, controls, fields, clock, lag_energy, work,
-            record,
+            trial, force, growth, parameters, background, mesh, controls, fields, clock, lag_energy,
+            work, record,
         )  # fmt: skip
         if shapes.shape[0] > count:
             for i in range(n):

@@ -26,6 +26,7 @@ from softafm.solvers.energy.layout import (
     make_mesh,
     new_clock,
     new_room,
+    no_background,
 )
 from softafm.solvers.energy.memory import recall
 from softafm.solvers.energy.stiffness import find_stiffness
@@ -109,7 +110,7 @@ class Surface:
         # The flat relaxed surface answers the first instant with its short-term modulus.
         first = contact.contact_radius_instantaneous(float(motion.height(breaks[0])))
         self.clock["frame"] = choose_frame(first, self.open_frame)
-        self.background = Background(np.empty((0, 0)), 1.0, 1.0, 1.0, 1.0, 0.0, 0.0)
+        self.background = no_background()
         self.clock["force_scale"] = contact.force_scale
 
     def _build_mesh(self, level: int) -> UnitMesh:
@@ -195,14 +196,17 @@ class Surface:
     def rewind(self, time: float) -> np.ndarray:
         """Go back to ``time``; return the memory gained since, (elements, n) in Pa·m.
 
-        It is returned on a mesh of its own, always the same, that of the finest level so far. The
-        surface keeps its mesh if it is in contact. To go on, ``remember`` first, then ``settle``.
+        It is returned on a mesh of its own, always the same, that of the finest level in the first
+        cycle about its widest edge. From the second on it was gathered there. The surface keeps its
+        mesh if it is in contact. To go on, ``remember`` first, then ``settle``.
         """
-        clock = self.clock
-        if self.archive[1] == 0:
-            self.archive = self._build_mesh(self.finest_used), float(clock["frame"])
-        archive, frame = self.archive
-        gained = self._carry(self.fields[MEMORY:], archive, frame / clock["frame"])
+        clock, elements = self.clock, len(self.background.values)
+        if elements:
+            gained = self.background.gained[2 : 2 + elements]
+        else:
+            frame = max(float(clock["widest"]), self.open_frame)
+            self.archive = self._build_mesh(self.finest_used), frame
+            gained = self._carry(self.fields[MEMORY:], self.archive[0], frame / clock["frame"])
         if clock["edge"] == 0:
             self.level = self.first_level
             mesh = self._build_mesh(self.level)
@@ -218,7 +222,8 @@ class Surface:
         mesh, frame = self.archive
         self.background = Background(
             memory, frame, mesh.nodes[-1], mesh.edge_spacing, mesh.growth,
-            frame * self.mesh.decay, self.time,
+            frame * self.mesh.decay, self.time, mesh.nodes,
+            np.zeros((len(memory) + 10, mesh.nodes.size)),
         )  # fmt: skip
 
     def memory(self) -> np.ndarray:
@@ -273,6 +278,10 @@ class Surface:
         strained = frame * mesh.stiffness @ (load - self.fields[LOAD])
         self.lag_energy += (0.5 * (load + self.fields[LOAD]) - memory) @ strained
         self.fields[LOAD] = load
+        if len(self.background.values):
+            mesh_there, frame_there = self.archive
+            there = self._carry(self.fields[LOAD : LOAD + 1], mesh_there, frame_there / frame)
+            self.background.gained[1] = there[0]
         gap = base + clock["deflection"] - u
         law(gap, self.parameters.law, pressure, scratch, n)
         force = tip_force(pressure, gap, rise, mesh, frame, law, self.parameters.law, far_work)
