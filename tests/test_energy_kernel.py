@@ -470,7 +470,10 @@ def test_steps_equal_those_of_a_plain_newton_method():
     )  # fmt: skip
     n, modes = MESH.nodes.size, retardation.size
     past = 0.2 / np.array([[3e-9], [1e-9]]) * np.array([[Z0], [-Z0]]) / (1 + MESH.nodes**2)
-    background = Background(past, FRAME, MESH.nodes[-1], MESH.edge_spacing, MESH.growth, 0.0, -1e-7)
+    gained = np.zeros((modes + 10, n))
+    background = Background(
+        past, FRAME, MESH.nodes[-1], MESH.edge_spacing, MESH.growth, 0.0, -1e-7, MESH.nodes, gained
+    )
     fields, clock = np.zeros((MEMORY + modes, n)), new_clock()
     clock["step"], clock["history"] = step, 1
     clock["frame"] = clock["frame_earlier"] = clock["frame_earliest"] = FRAME
@@ -534,6 +537,7 @@ def test_steps_equal_those_of_a_plain_newton_method():
     assert np.abs(fields[LOAD] - K @ p).max() < 1e-9 * np.abs(K @ p).max()
     for m in range(modes):
         assert np.abs(fields[MEMORY + m] - K @ w[m]).max() < 1e-9 * np.abs(K @ w[m]).max()
+        assert np.abs(gained[2 + m] - fields[MEMORY + m]).max() < 1e-9 * np.abs(K @ w[m]).max()
 
 
 def test_steps_stop_exactly_at_the_end():

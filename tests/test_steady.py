@@ -208,6 +208,30 @@ def test_any_chain_settles():
     assert float(result["dissipation"]) == pytest.approx(float(result["viscous_loss"]), rel=0.01)
 
 
+# Taps of samples that take many cycles to come to rest, with sharp rims in their memory.
+
+SOFT_TAPS = {  # sample, z0 in m, and the largest force at 1e-4, N
+    "creep of 0.28 periods": (sa.StandardLinearSolid(2e9, 0.1e9, 1e-6, 0.49), 0.25e-9, 48.066e-9),
+    "creep of a period": (sa.StandardLinearSolid(2e9, 0.1e9, 3.6e-6, 0.49), 0.25e-9, 83.230e-9),
+    "creep of 100 periods": (sa.StandardLinearSolid(2e9, 0.1e9, 3.6e-4, 0.49), 0.25e-9, 92.062e-9),
+    "ten times softer": (sa.StandardLinearSolid(2e8, 1e7, 1e-6, 0.49), 0.3e-9, 4.8397e-9),
+}
+
+
+@pytest.mark.parametrize("name", SOFT_TAPS)
+@pytest.mark.parametrize("tolerance", [1e-2, 1e-3])
+def test_taps_of_soft_samples_become_steady(name, tolerance):
+    """The memory is read from a mesh that does not ride, so that cycles repeat."""
+    sample, z0, largest = SOFT_TAPS[name]
+    contact = sa.Contact(sa.Paraboloid(10e-9), sample, sa.LennardJones(1e-19, z0))
+    tap = {"amplitude": 49.6e-9, "mean_height": 42.82e-9, "frequency": 278e3}
+    result = sa.tapping_cycle(contact, **tap, tolerance=tolerance)  # warnings are errors
+    assert int(result["cycles_run"]) < 10
+    assert float(result["force_max"]) == pytest.approx(largest, rel=5e-4)
+    released = float(result["viscous_loss"]) + float(result["jump_energy"].sum())
+    assert float(result["dissipation"]) == pytest.approx(released, rel=3e-3)
+
+
 # Energy
 
 

@@ -283,8 +283,7 @@ class Contact:
 
     def _find_contact_radius(self, tip_height: float, modulus: float) -> float:
         depth = -tip_height
-        shallowest = self._depth(self._rough_radii, modulus).min()
-        if depth < shallowest - _ROUGH * abs(shallowest):
+        if depth < self._bound_depth(modulus):
             return 0.0
         low, shallowest = self._last_contact(modulus)
         if depth < shallowest:
@@ -309,6 +308,17 @@ class Contact:
     @cached_property
     def _rough_radii(self) -> np.ndarray:
         return self.tip.radius_at(self.reach) * np.geomspace(1e-6, 1e6, 6 * _POINTS)
+
+    @cached_property
+    def _depth_bounds(self) -> dict[float, float]:
+        return {}
+
+    def _bound_depth(self, modulus: float) -> float:
+        """Depth of the tip, m, below which there is no contact at a modulus; found quickly."""
+        if modulus not in self._depth_bounds:
+            least = float(self._depth(self._rough_radii, modulus).min())
+            self._depth_bounds[modulus] = least - _ROUGH * abs(least)
+        return self._depth_bounds[modulus]
 
     @cached_property
     def _last_contacts(self) -> dict[float, tuple[float, float]]:

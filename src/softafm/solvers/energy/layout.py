@@ -136,6 +136,9 @@ class Background(NamedTuple):
 
     ``values`` (elements, nodes), or none, live on a mesh of this edge spacing and growth that ends
     at ``end`` in a frame of radius ``frame``, m, and fall by the ``decay`` of the body beyond.
+    On the ``nodes`` of that mesh the memory since then is gathered, too, as it is on the mesh that
+    rides: the rows of ``gained`` (elements + 10, nodes), if there are values, are the load before
+    and now, one y_m for each element, and 8 to work in.
     """
 
     values: np.ndarray
@@ -145,6 +148,8 @@ class Background(NamedTuple):
     growth: float
     decay: float
     since: float
+    nodes: np.ndarray
+    gained: np.ndarray
 
 
 class Controls(NamedTuple):
@@ -211,11 +216,18 @@ MESH = types.NamedTuple(
 )  # fmt: skip
 PARAMETERS = types.NamedUniTuple(VECTOR, len(Parameters._fields), Parameters)
 TABLE = types.NamedTuple((float64[:, :, ::1], float64, float64, MATRIX), Table)
-BACKGROUND = types.NamedTuple((MATRIX, *[float64] * 6), Background)
+BACKGROUND = types.NamedTuple((MATRIX, *[float64] * 6, CONSTANT_VECTOR, MATRIX), Background)
 CONTROLS = types.NamedUniTuple(float64, len(Controls._fields), Controls)
 CLOCK = from_dtype(CLOCK_FIELDS)
 ROOM = types.NamedUniTuple(MATRIX, len(Room._fields), Room)
 RECORDS = types.Array(from_dtype(RECORD_FIELDS), 1, "C")
+
+
+def no_background() -> Background:
+    """Return the background of a surface that has no past."""
+    nodes = np.empty(0)
+    nodes.setflags(write=False)
+    return Background(np.empty((0, 0)), 1.0, 1.0, 1.0, 1.0, 0.0, 0.0, nodes, np.empty((0, 0)))
 
 
 def new_clock() -> np.void:

@@ -76,6 +76,30 @@ def recall(background, time, frame, retardation, nodes, work, memory):
 
 
 @inline
+def gather(background, weights, load, mesh, frame):
+    """Carry the memory that a background gathers over a step to a ``load`` (1, n) of a frame."""
+    elements, n = background.values.shape
+    if elements > 0:
+        gained = background.gained
+        new = gained[elements + 2]
+        transfer(
+            load, mesh.nodes[mesh.nodes.size - 1], mesh.edge_spacing, mesh.growth,
+            frame * mesh.decay, background.frame / frame, background.nodes,
+            gained[elements + 3 :], gained[elements + 2 : elements + 3],
+        )  # fmt: skip
+        for m in range(elements):
+            for i in range(n):
+                gained[2 + m, i] = (
+                    weights[m, DECAY] * gained[2 + m, i]
+                    + weights[m, EARLIER] * gained[0, i]
+                    + weights[m, NOW] * gained[1, i]
+                    + weights[m, NEW] * new[i]
+                )
+        for i in range(n):
+            gained[0, i], gained[1, i] = gained[1, i], new[i]
+
+
+@inline
 def displace_by_memory(compliance, weights, load_earlier, load, memory, old, lags, v):
     """Carry the memory over a step as far as it is known; return the compliance of the step.
 

@@ -52,6 +52,7 @@ from softafm.solvers.energy.memory import (
     NEW,
     carry_lag_energy,
     dissipated_power,
+    gather,
 )  # fmt: skip
 from softafm.solvers.energy.proposal import choose_step, furnish, propose
 from softafm.solvers.energy.solution import (
@@ -127,8 +128,9 @@ def judge(trial, force, parameters, mesh, controls, clock, work, room):
 
 @inline
 def accept(
-    trial, force, growth, parameters, mesh, controls, fields, clock, lag_energy, work, record
-):
+    trial, force, growth, parameters, background, mesh, controls, fields, clock, lag_energy, work,
+    record,
+):  # fmt: skip
     """Make a step's end the state, and write it into a record."""
     n, elements = mesh.nodes.size, parameters.retardation.size
     gap, frame, memory = work.newton[0, :n], trial.frame, work.past[1:]
@@ -144,6 +146,7 @@ def accept(
         fields[LOAD_EARLIEST, i] = fields[LOAD_EARLIER, i]
         fields[LOAD_EARLIER, i] = fields[LOAD, i]
         fields[LOAD, i] = work.load_new[i]
+    gather(background, work.weights, fields[LOAD : LOAD + 1], mesh, frame)
     if trial.rides > 0:
         edge = frame
         clock.rides += 1.0
@@ -292,8 +295,8 @@ def advance(
         accept_force(clock.time, step, clock.force, force, parameters.lever, lever_state)
         record = records[count]
         accept(
-            trial, force, growth, parameters, mesh, controls, fields, clock, lag_energy, work,
-            record,
+            trial, force, growth, parameters, background, mesh, controls, fields, clock, lag_energy,
+            work, record,
         )  # fmt: skip
         if shapes.shape[0] > count:
             for i in range(n):

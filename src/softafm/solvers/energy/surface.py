@@ -26,6 +26,7 @@ from softafm.solvers.energy.layout import (
     make_mesh,
     new_clock,
     new_room,
+    no_background,
 )
 from softafm.solvers.energy.memory import recall
 from softafm.solvers.energy.stiffness import find_stiffness
@@ -92,7 +93,9 @@ class Surface:
         self.growth = GROWTH * min(1.0, strictness**0.17)
         slack = contact.tabor_softened > SLACK
         self.ride_from = RIDE_FROM * self.open_frame if slack else inf
-        self.trace_from = TRACE_FROM if contact.tabor_softened > SLACKER else inf
+        # What a steady cycle gathers is filtered at fixed radii.
+        traced = contact.tabor_softened > SLACKER and not is_steady(motion)
+        self.trace_from = TRACE_FROM if traced else inf
         duration = inf if is_steady(motion) else breaks[-1] - breaks[0]
         self.held = choose_spacing_held(self.parameters, duration)
         self.finest_level = max(0, ceil(log2(COARSEST_SPACING / finest_spacing)))
@@ -111,7 +114,7 @@ class Surface:
         # The flat relaxed surface answers the first instant with its short-term modulus.
         first = contact.contact_radius_instantaneous(float(motion.height(breaks[0])))
         self.clock["frame"] = choose_frame(first, self.open_frame)
-        self.background = Background(np.empty((0, 0)), 1.0, 1.0, 1.0, 1.0, 0.0, 0.0)
+        self.background = no_background()
         self.clock["force_scale"] = contact.force_scale
 
     def _build_mesh(self, level: int) -> UnitMesh:
@@ -218,14 +221,17 @@ class Surface:
     def rewind(self, time: float) -> np.ndarray:
         """Go back to ``time``; return the memory gained since, (elements, n) in Pa·m.
 
-        It is returned on a mesh of its own, always the same, that of the finest level so far. The
-        surface keeps its mesh if it is in contact. To go on, ``remember`` first, then ``settle``.
+        It is returned on a mesh of its own, always the same, that of the finest level in the first
+        cycle about its widest edge. From the second on it was gathered there. The surface keeps its
+        mesh if it is in contact. To go on, ``remember`` first, then ``settle``.
         """
-        clock = self.clock
-        if self.archive[1] == 0:
-            self.archive = self._build_mesh(self.finest_used), float(clock["frame"])
-        archive, frame = self.archive
-        gained = self._carry(self.fields[MEMORY:], archive, frame / clock["frame"])
+        clock, elements = self.clock, len(self.background.values)
+        if elements:
+            gained = self.background.gained[2 : 2 + elements]
+        else:
+            frame = max(float(clock["widest"]), self.open_frame)
+            self.archive = self._build_mesh(self.finest_used), frame
+            gained = self._carry(self.fields[MEMORY:], self.archive[0], frame / clock["frame"])
         if clock["edge"] == 0:
             self.level = self.first_level
             mesh = self._build_mesh(self.level)
@@ -241,7 +247,8 @@ class Surface:
         mesh, frame = self.archive
         self.background = Background(
             memory, frame, mesh.nodes[-1], mesh.edge_spacing, mesh.growth,
-            frame * self.mesh.decay, self.time,
+            frame * self.mesh.decay, self.time, mesh.nodes,
+            np.zeros((len(memory) + 10, mesh.nodes.size)),
         )  # fmt: skip
 
     def memory(self) -> np.ndarray:
@@ -307,6 +314,10 @@ class Surface:
         strained = frame * mesh.stiffness @ (load - self.fields[LOAD])
         self.lag_energy += (0.5 * (load + self.fields[LOAD]) - memory) @ strained
         self.fields[LOAD] = load
+        if len(self.background.values):
+            mesh_there, frame_there = self.archive
+            there = self._carry(self.fields[LOAD : LOAD + 1], mesh_there, frame_there / frame)
+            self.background.gained[1] = there[0]
         gap = h0 - self.parameters.law[ORIGIN] + tip + clock["deflection"] - u
         law(gap, self.parameters.law, pressure, scratch, n)
         force = tip_force(pressure, gap, rise, mesh, frame, law, self.parameters.law, far_work)
@@ -332,21 +343,19 @@ class Surface:
         self.tabulate(float(frame))
         elastic = np.pi * frame * self.parameters.compliance[0] * (load @ mesh.stiffness @ load)
 
-        def density(radius: np.ndarray, deformation: Any) -> np.ndarray:
-            gap = h0 + self.contact.tip.profile(radius) - deformation - self.parameters.law[ORIGIN]
-            found = np.empty(gap.size)
-            self.functions.potential(gap, self.parameters.law, found, gap.size)
-            return found
-
-        near = frame**2 * mesh.masses @ density(frame * mesh.nodes, self.fields[DEFORMATION])
         end = frame * mesh.nodes[-1]
-        r = 2 * end / (1 + _POINTS)
+        beyond = 2 * end / (1 + _POINTS)
         # There the surface is as high as at the last node, as for the force: in a wide dent the tip
         # would be inside one that is flat.
-        level = self.fields[DEFORMATION][-1]
-        beyond = np.sum(_WEIGHTS * density(r, level) * r**3 / (2 * end))
+        shape = self.fields[DEFORMATION]
+        shape = np.concatenate([shape, np.full(beyond.size, shape[-1])])
+        radius = np.concatenate([frame * mesh.nodes, beyond])
+        gap = h0 + self.contact.tip.profile(radius) - shape - self.parameters.law[ORIGIN]
+        density = np.empty(gap.size)
+        self.functions.potential(gap, self.parameters.law, density, gap.size)
+        areas = np.concatenate([frame**2 * mesh.masses, _WEIGHTS * beyond**3 / (2 * end)])
         bending = 0.5 * self.lever.stiffness * deflection**2 if self.bends else 0.0
-        return float(elastic + bending + 2 * np.pi * (near + beyond))
+        return float(elastic + bending + 2 * np.pi * areas @ density)
 
     def stored_energy(self) -> float:
         """Energy stored in sample, surfaces and lever, J.
