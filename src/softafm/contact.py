@@ -21,6 +21,8 @@ from softafm.tips import Tip
 from softafm.tips.check import check_tip
 
 _ZOOMS, _POINTS = 9, 33
+_ROUGH = 0.1
+"""Largest error of a least depth on radii 15 % apart, relative: ten times that of a paraboloid."""
 _SOFT = 1e-4
 """Share of the modulus to which the repulsion of a law without attraction falls at the edge."""
 _MOST_STRETCHES, _SAME = 60, 1e-9
@@ -281,6 +283,8 @@ class Contact:
 
     def _find_contact_radius(self, tip_height: float, modulus: float) -> float:
         depth = -tip_height
+        if depth < self._bound_depth(modulus):
+            return 0.0
         low, shallowest = self._last_contact(modulus)
         if depth < shallowest:
             return 0.0
@@ -302,13 +306,28 @@ class Contact:
         return float(high)
 
     @cached_property
+    def _rough_radii(self) -> np.ndarray:
+        return self.tip.radius_at(self.reach) * np.geomspace(1e-6, 1e6, 6 * _POINTS)
+
+    @cached_property
+    def _depth_bounds(self) -> dict[float, float]:
+        return {}
+
+    def _bound_depth(self, modulus: float) -> float:
+        """Depth of the tip, m, below which there is no contact at a modulus; found quickly."""
+        if modulus not in self._depth_bounds:
+            least = float(self._depth(self._rough_radii, modulus).min())
+            self._depth_bounds[modulus] = least - _ROUGH * abs(least)
+        return self._depth_bounds[modulus]
+
+    @cached_property
     def _last_contacts(self) -> dict[float, tuple[float, float]]:
         return {}
 
     def _last_contact(self, modulus: float) -> tuple[float, float]:
         """Radius of the smallest stable contact at a modulus, and the depth of the tip there, m."""
         if modulus not in self._last_contacts:
-            radius = self.tip.radius_at(self.reach) * np.geomspace(1e-6, 1e6, 6 * _POINTS)
+            radius = self._rough_radii
             for _ in range(_ZOOMS // 2 + 1):  # a least depth has twice the digits of its radius
                 depth = self._depth(radius, modulus)
                 least = np.clip(depth.argmin(), 1, radius.size - 2)

@@ -11,7 +11,7 @@ from softafm.instrument.motion import Motion
 from softafm.solvers.energies import Energies, measure_energies
 
 _POINTS, _WEIGHTS = np.polynomial.legendre.leggauss(4)
-_MOST_UNEVEN = 4.0
+_PARTS = np.linspace(0, 1, 64)[1:-1]
 
 
 @dataclass(frozen=True)
@@ -156,8 +156,7 @@ class History:
     ) -> float:
         """Largest (``sign`` 1) or smallest (-1) of ``values`` (n,) between two times (s).
 
-        Refined by the parabola through the extreme step and its neighbours in the same piece, where
-        they are about as far away on one side as on the other.
+        Refined in the intervals on both sides of the extreme step by the cubics of ``integrate``.
         """
         best = -np.inf
         for piece in self.pieces:
@@ -166,15 +165,19 @@ class History:
             if inside.size == 0:
                 continue
             top = inside[np.argmax(height[inside])]
-            value = height[top]
+            best = max(best, height[top])
             if inside[0] < top < inside[-1]:
-                (x0, x1), (y0, y1) = (
-                    time[top - 1 : top + 2 : 2] - time[top],
-                    height[top - 1 : top + 2 : 2] - value,
-                )
-                curvature = (y1 / x1 - y0 / x0) / (x1 - x0)
-                slope = y0 / x0 - curvature * x0
-                if curvature < 0 and _MOST_UNEVEN * x1 > -x0 > x1 / _MOST_UNEVEN:
-                    value -= slope**2 / (4 * curvature)
-            best = max(best, value)
+                best = max(best, _find_summit(time, height, top))
         return sign * float(best)
+
+
+def _find_summit(time: np.ndarray, height: np.ndarray, top: int) -> float:
+    """Largest height (n,) that the local cubics have within an interval of the step ``top``."""
+    from softafm.solvers.cubics import cubics
+
+    starts, ends = time[top - 1 : top + 1, None], time[top : top + 2, None]
+    at = starts + (ends - starts) * _PARTS
+    near = np.empty((2, min(4, time.size)), int)
+    basis = np.empty((*at.shape, near.shape[1]))
+    cubics(time, at, near, basis)
+    return float(np.einsum("mpc,mc->mp", basis, height[near]).max())

@@ -43,6 +43,7 @@ def creep_down(run: "Run", time: float, duration: float) -> None:
     surface, controls = run.surface, run.controls
     functions, parameters, background = surface.functions, surface.parameters, surface.background
     lever, state = surface.lever, surface.lever_state
+    before = surface.clock["axis_gap"], surface.clock["edge"]
     stiff, delayed = _split_compliance(parameters.compliance[0], run.contact.tabor_instantaneous)
     surface.functions = functions._replace(height=still)
     # The clock of the fall starts at 0; the past goes on fading from where it is.
@@ -61,7 +62,9 @@ def creep_down(run: "Run", time: float, duration: float) -> None:
         run.controls = _loosen(controls, creep_time, duration, surface.clock["tries"])
         if not _reach_end(run, creep_time, duration):
             break
-        if _is_done(surface, delayed) and not _would_jump(surface, parameters, lever):
+        if not _is_done(surface, delayed):
+            continue
+        if is_jump(surface.clock, *before) or not _would_jump(surface, parameters, lever):
             break
     surface.mount(lever, state)
     surface.functions, surface.parameters, surface.background = functions, parameters, background

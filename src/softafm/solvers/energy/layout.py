@@ -44,7 +44,7 @@ CLOCK_FIELDS = record(
     "zone",  # width of the cohesive zone at the edge, m, 0 out of contact
     "axis_gap",  # gap on the axis, m
     "force", "force_earlier", "force_earliest",  # N
-    "force_scale",  # the largest force so far, N
+    "force_scale",  # the largest attraction so far, or a force to be felt, N
     "deflection", "deflection_earlier", "deflection_earliest",  # of the lever, m
     "history",  # number of past shapes fit for extrapolation
     "tries",  # attempted steps so far
@@ -148,7 +148,8 @@ class Controls(NamedTuple):
     """What steers ``advance``: times s, lengths m, speed m/s, the rest dimensionless.
 
     ``prediction``, ``memory`` and ``force`` are the errors allowed per step, ``newton`` that of an
-    equilibrium; all relative to the gap, but ``force`` to the largest force so far.
+    equilibrium; all relative to the gap, but ``force`` to the force itself, or where that is less
+    to the largest attraction so far.
     ``slack`` is how far the edge moves, in edge spacings, while the frame catches up with it; the
     frame stays behind an edge where it is that its nodes lie closer than ``held`` times the zone.
     Remeshing is asked for when the coarseness of a record leaves ``finest`` to ``coarsest``.

@@ -167,7 +167,7 @@ def move_clock(clock, step, frame, edge, force, deflection):
     clock.edge_earlier, clock.taken_earlier = clock.edge, clock.taken
     clock.deflection, clock.force, clock.frame = deflection, force, frame
     clock.edge, clock.taken = edge, step
-    clock.force_scale = max(clock.force_scale, abs(force))
+    clock.force_scale = max(clock.force_scale, -force)
 
 
 @compile_for(

@@ -281,7 +281,7 @@ class Surface:
         clock["frame_earlier"] = clock["frame_earliest"] = frame
         clock["edge"], clock["axis_gap"], clock["force"] = edge, gap[0], force
         clock["zone"] = zone if edge else 0.0
-        clock["force_scale"] = max(clock["force_scale"], abs(force))
+        clock["force_scale"] = max(clock["force_scale"], -force)
         clock["history"] = 1
         loss = 4 * np.pi * (elements / self.parameters.retardation) @ self.lag_energy
         spacing = frame * mesh.edge_spacing
@@ -297,21 +297,19 @@ class Surface:
         self.tabulate(float(frame))
         elastic = np.pi * frame * self.parameters.compliance[0] * (load @ mesh.stiffness @ load)
 
-        def density(radius: np.ndarray, deformation: Any) -> np.ndarray:
-            gap = h0 + self.contact.tip.profile(radius) - deformation - self.parameters.law[ORIGIN]
-            found = np.empty(gap.size)
-            self.functions.potential(gap, self.parameters.law, found, gap.size)
-            return found
-
-        near = frame**2 * mesh.masses @ density(frame * mesh.nodes, self.fields[DEFORMATION])
         end = frame * mesh.nodes[-1]
-        r = 2 * end / (1 + _POINTS)
+        beyond = 2 * end / (1 + _POINTS)
         # There the surface is as high as at the last node, as for the force: in a wide dent the tip
         # would be inside one that is flat.
-        level = self.fields[DEFORMATION][-1]
-        beyond = np.sum(_WEIGHTS * density(r, level) * r**3 / (2 * end))
+        shape = self.fields[DEFORMATION]
+        shape = np.concatenate([shape, np.full(beyond.size, shape[-1])])
+        radius = np.concatenate([frame * mesh.nodes, beyond])
+        gap = h0 + self.contact.tip.profile(radius) - shape - self.parameters.law[ORIGIN]
+        density = np.empty(gap.size)
+        self.functions.potential(gap, self.parameters.law, density, gap.size)
+        areas = np.concatenate([frame**2 * mesh.masses, _WEIGHTS * beyond**3 / (2 * end)])
         bending = 0.5 * self.lever.stiffness * deflection**2 if self.bends else 0.0
-        return float(elastic + bending + 2 * np.pi * (near + beyond))
+        return float(elastic + bending + 2 * np.pi * areas @ density)
 
     def stored_energy(self) -> float:
         """Energy stored in sample, surfaces and lever, J.

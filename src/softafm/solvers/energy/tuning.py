@@ -128,7 +128,9 @@ MEMORY_ERROR = 0.01
 """Largest error of the memory in a step, relative to the gap, at that tolerance."""
 
 FORCE_ERROR = 0.01
-"""Largest error of the extrapolated force, relative to the largest so far, at that tolerance."""
+"""Largest error of the extrapolated force, relative to itself or to the largest attraction so far,
+if that is more, at that tolerance. Where it has fallen again, the largest repulsion is no measure:
+it may be a thousand times the pull-off."""
 
 APPROACH = 0.3
 """Part of the gap that an approaching tip may cross in a step before it feels the surface."""
