@@ -144,6 +144,23 @@ def test_a_force_that_nothing_holds_is_warned_of():
         assert any("nothing holds this tip" in str(p) for p in problems) == warned
 
 
+@pytest.mark.parametrize(("highest", "warned"), [(1.0, False), (1.2, True)])
+def test_an_elastic_contact_that_lasts_where_none_can_is_warned_of(highest, warned):
+    """A paraboloid parts at 1.6087 (W² R/E²)^(1/3) under fixed grips (JKR), and a range beyond."""
+    law = sa.LennardJones.from_work_of_adhesion(0.03, 0.3e-9)
+    contact = sa.Contact(sa.Paraboloid(10e-9), sa.Elastic(20e6, 0.0), law)
+    parts = 1.6087 * (0.03**2 * 10e-9 / 20e6**2) ** (1 / 3) + contact.edge_gap + contact.reach
+    history = Energy().solve(contact, sa.Triangle(20e-9, -2e-9, 1e-6))
+    edge = np.where(np.abs(history.tip_height) < highest * parts, 5e-9, 0.0)
+    jumps = np.linspace(*history.time[[1, -2]], 4)
+    caught = replace(
+        history, contact_radius=edge, jump_time=jumps, jump_energy=0 * jumps, diagnostics={}
+    )
+    problems = audit(contact, caught, 1e-2).problems
+    assert any("caught on the nodes" in str(problem) for problem in problems) == warned
+    assert f"{parts * 1e9:.3g}"[:3] in str(problems) or not warned
+
+
 def test_a_second_well_beyond_a_barrier_holds_more_than_the_first():
     law = sa.DLVO(1e-20, 0.3e-9, 0.03, 2e-9)
     contact = sa.Contact(sa.Paraboloid(1e-6), sa.Elastic(1e9, 0.3), law)

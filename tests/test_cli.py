@@ -243,6 +243,21 @@ def test_info_shows_the_regime_without_running(folder, softafm):
     assert names(folder) == before
 
 
+def test_run_shows_its_audit_and_info_that_a_run_would_end_in_contact(folder, softafm):
+    softafm("example", "ldpe-spectroscopy")
+    soft = ("--set", "cantilever.stiffness=0.05 N/m")
+    code, out, _ = softafm("info", "ldpe-spectroscopy.toml", *soft)
+    assert code == 0
+    assert re.search(r"end of the motion +20 nm +the tip parts at about \d\d nm: start there", out)
+    code, out, err = softafm("run", "ldpe-spectroscopy.toml", *soft, "--out", "stuck.nc")
+    assert code == 0
+    assert re.search(r"audit +failed +signs, bounds and the end; energy balanced to", out)
+    assert "still in contact at the end" in err
+    code, out, err = softafm("run", "ldpe-spectroscopy.toml", "--out", "parted.nc")
+    assert (code, err) == (0, "")
+    assert re.search(r"audit +passed", out)
+
+
 @pytest.mark.parametrize(
     ("settings", "cost", "reason"),
     [

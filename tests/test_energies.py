@@ -66,6 +66,20 @@ def test_nearly_elastic_taps_keep_the_tolerance_of_their_own_dissipation(
     assert float(rough.dissipation) == pytest.approx(float(fine.dissipation), rel=1e-2)
 
 
+@pytest.mark.filterwarnings("ignore:.*still in contact at the end:softafm.AccuracyWarning")
+def test_a_surface_drawn_into_contact_at_once_starts_where_it_ends():
+    """From within the height of jump-in: an elastic contact then has one force at one height."""
+    z0 = 1e-9
+    law, tip = sa.LennardJones.from_work_of_adhesion(0.02, z0), sa.Paraboloid(1e-6)
+    curve = sa.force_distance(
+        sa.Contact(tip, sa.Elastic(1e8, 0.3), law), sa.Triangle(3 * z0, 0, 1e-6)
+    )
+    force = curve.force.values
+    assert force[0] == pytest.approx(force[-1], rel=1e-3)
+    assert curve.jump_time.size == 0
+    assert float(curve.loop_energy) == 0.0
+
+
 @pytest.mark.parametrize(("stiffness", "start"), [(0.05, 20e-9), (0.05, 50e-9), (28.1, 20e-9)])
 def test_work_is_what_is_lost_and_stored_whether_the_tip_parts_or_not(stiffness, start):
     law = sa.LennardJones(1e-19, 0.25e-9)

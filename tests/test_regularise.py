@@ -128,6 +128,7 @@ RUNS = {
 }
 
 
+@pytest.mark.filterwarnings("ignore:.*still in contact at the end:softafm.AccuracyWarning")
 @pytest.mark.parametrize("mode", RUNS)
 def test_every_mode_runs_the_regularised_contact_and_records_both(mode):
     run = RUNS[mode]
@@ -155,6 +156,7 @@ def test_it_is_recorded_where_nothing_had_to_change():
     assert float(result.force_min) == float(sa.force_distance(stiff, motion).force_min)
 
 
+@pytest.mark.filterwarnings("ignore:.*still in contact at the end:softafm.AccuracyWarning")
 def test_the_edge_of_a_viscoelastic_contact_is_slowed_and_that_is_told():
     """The cohesive length E z0²/W grows with the square of the range."""
     for sample in (sa.StandardLinearSolid(2e7, 2e6, 1e-4, 0.5), sa.Maxwell(2e7, 1e-4, 0.5)):

@@ -366,6 +366,20 @@ def test_cycles_that_scatter_are_not_steady_by_chance(misses, scatter):
     assert _scatter(misses) == pytest.approx(scatter)
 
 
+def test_an_elastic_tap_that_never_comes_off_is_steady_only_once_it_is_caught():
+    """Its first cycle falls into contact; the ones after it neither jump nor lose anything."""
+    soft = sa.Contact(
+        sa.Paraboloid(1e-6),
+        sa.Elastic(2e6, 0.5),
+        sa.LennardJones.from_work_of_adhesion(0.05, 0.3e-9).stretched(100),
+    )
+    tap = sa.tapping_cycle(soft, 35e-9, 91.57e-9, 5e4)
+    assert tap.cycles_run == 2
+    assert tap.contact_radius.values.min() > 0
+    assert tap.jump_time.size == 0
+    assert float(tap.dissipation) == 0
+
+
 def test_cycles_that_find_no_steady_state_are_warned_of(monkeypatch):
     from softafm.solvers.energy import run as energy_run
 

@@ -27,6 +27,8 @@ if TYPE_CHECKING:
 _SHARE_OF_WAY = 0.01
 """Part of the largest force times the way of the tip below which an energy counts as none: of taps
 2 % of force times amplitude."""
+_IN_AND_OUT, _FARTHER = 2, 1.05
+"""Jumps of a usual loop, and how much farther than JKR's a contact may reach."""
 _FASTER = 1.5
 """How much more than so far a contact that is still pulled may come to bear."""
 _GAPS = np.geomspace(1e-2, 1e3, 101)
@@ -102,6 +104,7 @@ def audit(
         *_doubt_balance(energies, imbalance, tolerance),
         *_doubt_signs(contact, history, energies),
         *_doubt_force(contact, history, lowest, tolerance),
+        *_doubt_tail(contact, history),
         *(_doubt_end(contact, history, stiffness) if in_contact else ()),
     )
     return Audit(energies, imbalance, lowest, in_contact, problems)
@@ -180,6 +183,24 @@ def _doubt_force(
             f"audit: the force goes down to {write_quantity(found, 'N')}, and nothing holds this "
             f"tip with more than {write_quantity(-lowest, 'N')}, 2πRW times E0/E_inf; {_REMEDY}",
             found / lowest,
+        )
+
+
+def _doubt_tail(contact: "Contact", history: "History") -> Iterator[AccuracyWarning]:
+    """Yield that an elastic contact lasts where none can, as an edge that catches on nodes does.
+
+    One that falls in and out once cannot have: the others are worth the look.
+    """
+    if not contact.adhesive or history.viscous_power.any() or history.jump_time.size <= _IN_AND_OUT:
+        return
+    highest = float(history.tip_height[history.contact_radius > 0].max(initial=-np.inf))
+    parted = estimate_parting_height(contact, contact.surface.work_of_adhesion)
+    if highest > _FARTHER * parted:
+        yield AccuracyWarning(
+            f"audit: the tip stays in contact up to {write_quantity(highest, 'm')}, and an elastic "
+            f"contact like this parts at {write_quantity(parted, 'm')} at the latest: its edge has "
+            "caught on the nodes; try regularise=8",
+            highest / parted,
         )
 
 

@@ -110,6 +110,8 @@ class Run:
         """Run, yielding the fraction of the motion done at every return of the compiled loop."""
         surface = self.surface
         self._settle()
+        if surface.clock["edge"] > 0 and self.cycle == 1:
+            self._fall_at_start()
         self.stored = surface.stored_energy(), 0.0
         trigger = self._trigger(-np.inf)
         if surface.clock["force"] >= trigger:
@@ -148,7 +150,7 @@ class Run:
         self.stored = self.stored[0], surface.stored_energy()
 
     def cycles(self) -> Iterator[float]:
-        """Run the motion over and over, until the memory ends a cycle as it began it.
+        """Run the motion over and over, until surface and memory end a cycle as they began it.
 
         Only the last cycle is kept. Yields as ``steps``.
         """
@@ -173,7 +175,8 @@ class Run:
             memory, off = periodic.next_start(memory, gained)
             self.unsteady = off / surface.edge_gap
             misses.append(self.unsteady)
-            if self.unsteady <= self.steadiness or _stagnates(misses):
+            caught = surface.clock["edge"] > 0 and self.records[0]["edge"] == 0
+            if not caught and (self.unsteady <= self.steadiness or _stagnates(misses)):
                 self.unsteady = max(self.unsteady, _scatter(misses))
                 return
             surface.remember(memory)
@@ -255,6 +258,16 @@ class Run:
         records = self._free_records()[:1]
         records[0] = record
         self._keep(records, self.surface.fields[DEFORMATION][None])
+
+    def _fall_at_start(self) -> None:
+        """Let a surface that is drawn into contact at once come to rest on a mesh that suits it."""
+        surface, start = self.surface, self.surface.time
+        creep_down(self, start, self.controls.shortest_step)
+        surface.clock["time"] = start
+        self.count = 0
+        if self.shapes is not None:
+            self.shapes.clear()
+        self._settle()
 
     def _fall(self, stop: float) -> None:
         """Pass a short step where no stable shape is near, and note a jump if it is one."""
