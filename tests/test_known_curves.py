@@ -369,6 +369,29 @@ def test_a_triangle_and_its_corners_give_one_curve():
     assert np.array_equal(whole.force, one.force)
 
 
+def test_a_rest_on_the_way_in_is_the_limit_of_a_slow_stretch():
+    sample, heights = make_solid(), np.array([1, -4, -4, -10, 1]) * 1e-9
+    times = np.array([0, 5, 9, 15, 26]) * 1e-4
+    resting = indentation.ting(PARABOLOID, sample, sa.Trajectory(times, heights))
+    slow = heights - np.array([0, 0, 1e-15, 0, 0])
+    crawling = indentation.ting(PARABOLOID, sample, sa.Trajectory(times, slow), resting.time)
+    assert resting.force == pytest.approx(crawling.force, abs=1e-5 * resting.force.max())
+    assert np.any(np.diff(resting.force[resting.time < times[2]]) < 0)
+
+
+def test_a_motion_may_end_in_contact():
+    sample = make_solid()
+    whole = indentation.ting(PARABOLOID, sample, TRIANGLE)
+    for share in (0.0, 0.05):
+        times = np.unique([0, MET + TIME, MET + (1 + share) * TIME])
+        path = sa.Trajectory(times, TRIANGLE.height(times))
+        part = indentation.ting(PARABOLOID, sample, path)
+        assert part.time[-1] == times[-1]
+        known = np.interp(part.time, whole.time, whole.force)
+        assert part.force == pytest.approx(known, abs=2e-3 * whole.force.max())
+        assert part.force[-1] > 0.4 * part.force.max()
+
+
 def test_a_sine_is_followed_as_closely_as_its_samples():
     motion, sample = sa.Sine(-2e-9, 10e-9, 200.0), make_solid()
     curve = indentation.ting(PARABOLOID, sample, motion)

@@ -226,6 +226,25 @@ def test_tips_and_laws_of_ones_own_are_refused(hard):
         sa.plot(hard.assign_attrs(experiment=described), reference="hertz")
 
 
+@pytest.mark.parametrize(
+    "damage",
+    [
+        lambda described: described.pop("tip"),
+        lambda described: described["tip"].pop("radius"),
+        lambda described: described["tip"].update(kind=["paraboloid"]),
+        lambda described: described["sample"].update(E="soft"),
+        lambda described: described.update(surface=3),
+        lambda described: described.pop("motion"),
+        lambda described: described["motion"].pop("kind"),
+    ],
+)
+def test_descriptions_that_are_damaged_are_refused(hard, damage):
+    described = json.loads(hard.attrs["experiment"])
+    damage(described)
+    with pytest.raises(ValueError, match=r"^reference = 'ting': [^\n]+$"):
+        sa.plot(hard.assign_attrs(experiment=json.dumps(described)), reference="ting")
+
+
 def test_bodies_other_than_half_spaces_are_refused(hard, monkeypatch):
     slab = describe(Slab(sa.Elastic(2e6, 0.5)))
     experiment = json.loads(hard.attrs["experiment"]) | {"sample": slab}

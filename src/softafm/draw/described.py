@@ -1,8 +1,9 @@
-"""The contact of a result, built anew from what its attributes describe."""
+"""Contact and motion of a result, built anew from what its attributes describe."""
 
 import json
 import warnings
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
 from dataclasses import fields
 from inspect import isabstract
 from types import ModuleType
@@ -13,6 +14,7 @@ import xarray as xr
 from softafm import bodies, rheology, surfaces, tips
 from softafm.contact import Contact
 from softafm.errors import DoubtfulValueWarning
+from softafm.instrument.motions import Sine
 
 _ROOMS: dict[str, tuple[ModuleType, ...]] = {
     "tip": (tips,),
@@ -27,12 +29,40 @@ def read_contact(result: xr.Dataset) -> Contact:
     Raises
     ------
     ValueError
-        If a part of it is of a class of the user's own, which the result names but does not hold.
+        If a part of it is of a class of the user's own, which the result names but does not hold,
+        or the description is not complete.
     """
-    described = json.loads(result.attrs["experiment"])
-    with warnings.catch_warnings():
+    with _refuse_damaged(), warnings.catch_warnings():
         warnings.simplefilter("ignore", DoubtfulValueWarning)  # the run has given them
+        described = json.loads(result.attrs["experiment"])
         return Contact(**{role: _build(role, described[role]) for role in _ROOMS})
+
+
+def read_sine(result: xr.Dataset) -> Sine | None:
+    """Return the sine that a result describes as the motion of its tip; None of other motions.
+
+    Raises
+    ------
+    ValueError
+        If the description is not complete.
+    """
+    with _refuse_damaged():
+        motion = json.loads(result.attrs["experiment"])["motion"]
+        if motion["kind"] != Sine.kind or "base_height" in result:
+            return None
+        return Sine(*(motion[each.name] for each in fields(Sine)))
+
+
+@contextmanager
+def _refuse_damaged() -> Iterator[None]:
+    """Reword what Python says of a description, of unknown origin, that lacks something."""
+    try:
+        yield
+    except (KeyError, TypeError, AttributeError) as error:
+        raise ValueError(
+            f"the result does not describe its experiment as softafm does ({error!r}); give a "
+            "reference as heights and forces"
+        ) from None
 
 
 def _build(role: str, described: Mapping[str, Any]) -> Any:

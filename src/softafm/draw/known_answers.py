@@ -1,7 +1,7 @@
 """Known answers for the contact of a result, by name, where they suit it."""
 
-import json
 from collections.abc import Callable
+from dataclasses import replace
 from math import isinf, pi
 
 import numpy as np
@@ -9,9 +9,9 @@ import xarray as xr
 
 from softafm import indentation
 from softafm.contact import Contact
-from softafm.draw.described import read_contact
+from softafm.draw.described import read_contact, read_sine
 from softafm.instrument.motion import Motion
-from softafm.instrument.motions import Sine, Trajectory
+from softafm.instrument.motions import Trajectory
 from softafm.tips import Paraboloid
 
 Line = tuple[np.ndarray, np.ndarray]
@@ -128,24 +128,21 @@ def _find_ting(contact: Contact, run: xr.Dataset, gap: float) -> Line:
 
 def _find_motion(run: xr.Dataset, gap: float) -> Motion:
     """Return how the tip of a run moved, counted from where surfaces rest on each other."""
-    motion = json.loads(run.attrs["experiment"])["motion"]
-    steady, cycles = motion.get("cycles") == "steady", run.attrs.get("solver_cycles", 1)
-    if steady and cycles > 1:
-        raise ValueError(
-            f"is of one dent in a surface at rest, and this is cycle {cycles:g}, before which the "
-            "surface had not come to rest; take a run with cycles = 1"
-        )
-    on_lever = "base_height" in run
-    if motion["kind"] == "sine" and not on_lever:
-        mean = motion["mean_height"] - gap
-        cycles = 1 if steady else motion["cycles"]
-        return Sine(mean, motion["amplitude"], motion["frequency"], cycles)
+    sine = read_sine(run)
+    if sine is not None:
+        cycles = run.attrs.get("solver_cycles", 1)
+        if sine.steady and cycles > 1:
+            raise ValueError(
+                f"is of one dent in a surface at rest, and this is cycle {cycles:g}, before which "
+                "the surface had not come to rest; take a run with cycles = 1"
+            )
+        return replace(sine, mean_height=sine.mean_height - gap, cycles=sine.periods)
     time, height = run["time"].values, run["tip_height"].values - gap
     if time.size > _MOST_STEPS:
         kept = np.union1d(np.linspace(0, time.size - 1, _MOST_STEPS).astype(int), height.argmin())
         time, height = time[kept], height[kept]
     # Between steps ramps are straight, and the tip of a lever follows a curve.
-    return Trajectory(time, height, smooth=on_lever)
+    return Trajectory(time, height, smooth="base_height" in run)
 
 
 ANSWERS: dict[str, tuple[str, Callable[[Contact, xr.Dataset, float], Line]]] = {

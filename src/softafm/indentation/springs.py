@@ -2,7 +2,7 @@
 
 from collections.abc import Callable
 from itertools import pairwise
-from math import isinf, pi
+from math import inf, isinf, pi
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -75,7 +75,7 @@ class Springs:
         return Curve(radius, -np.interp(times, *self.dent.whole), force, times)
 
     def find_end(self) -> float:
-        """Return when the contact is over, or the motion, s.
+        """Return when the contact is over, s; infinite if the motion ends before.
 
         Raises
         ------
@@ -97,7 +97,7 @@ class Springs:
                 "meets the tip again; must withdraw faster"
             )
         if not over.size:
-            return float(times[-1])
+            return inf if dent.depth[-1] > 0 else float(times[-1])
         low, high = float(times[last - 1]), float(times[last])
         for _ in range(_HALVINGS):
             middle = (low + high) / 2
@@ -158,8 +158,8 @@ class Springs:
 
     def choose_times(self, over: float) -> np.ndarray:
         """Return times of a curve, s: dense where the motion has corners, and the contact ends."""
-        corners = self.dent.time[self.dent.corners]
-        corners = np.append(corners[corners < over], over)
+        corners, end = self.dent.time[self.dent.corners], min(over, float(self.dent.time[-1]))
+        corners = np.append(corners[corners < end], end)
         grades = (1 - np.cos(np.linspace(0, pi, _POINTS))) / 2
         parts = [start + (end - start) * grades for start, end in pairwise(corners)]
         return np.unique(np.concatenate(parts))
