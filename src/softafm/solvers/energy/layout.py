@@ -9,7 +9,7 @@ a change of frame is an interpolation of smooth fields.
 from typing import NamedTuple
 
 import numpy as np
-from numba import float64, from_dtype, types
+from numba import float64, from_dtype, int64, types
 
 from softafm.bodies.mesh import UnitMesh
 from softafm.compiled.functions import CompiledFunction
@@ -203,8 +203,8 @@ class Room(NamedTuple):
     """(n, n)."""
     system: np.ndarray
     """(n + 2, n + 2)."""
-    order: np.ndarray
-    """(2, 2n + 4)."""
+    change: np.ndarray
+    """(1, n + 2)."""
 
 
 MESH = types.NamedTuple(
@@ -219,6 +219,7 @@ TABLE = types.NamedTuple((float64[:, :, ::1], float64, float64, MATRIX), Table)
 BACKGROUND = types.NamedTuple((MATRIX, *[float64] * 6, CONSTANT_VECTOR, MATRIX), Background)
 CONTROLS = types.NamedUniTuple(float64, len(Controls._fields), Controls)
 CLOCK = from_dtype(CLOCK_FIELDS)
+PIVOTS = int64[::1]
 ROOM = types.NamedUniTuple(MATRIX, len(Room._fields), Room)
 RECORDS = types.Array(from_dtype(RECORD_FIELDS), 1, "C")
 
@@ -245,5 +246,5 @@ def new_room(nodes: int, far: int, elements: int) -> Room:
         np.empty((elements + 1, 5)),
         np.empty((nodes, nodes)),
         np.empty((nodes + 2, nodes + 2)),
-        np.empty((2, 2 * nodes + 4)),
+        np.empty((1, nodes + 2)),
     )

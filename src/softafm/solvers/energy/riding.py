@@ -57,7 +57,7 @@ def find_lean(profile, parameters, mesh, frame, radii, higher, lean):
 
 
 @inline
-def hold_edge(mesh, slope, first, weights, off, moved, hessian, change, column):
+def _hold_edge(mesh, slope, first, weights, off, moved, hessian, change, column):
     """Add κ r r' to the Hessian and what belongs to it to both right-hand sides."""
     n = mesh.nodes.size
     kappa = 0.0
@@ -73,6 +73,55 @@ def hold_edge(mesh, slope, first, weights, off, moved, hessian, change, column):
     hessian[n, n] += kappa
     change[n] += kappa * off
     column[n] += kappa * moved
+
+
+@inline
+def _assemble(
+    u, v, slide, frame, compliance, lifts, spring, rest, rise, mesh, profile, tip_parameters,
+    law, parameters, edge_gap, hessian, work, rows, far_work,
+):  # fmt: skip
+    """H + κ r r' into the Hessian, both right-hand sides into ``change`` and ``column``; returns d.
+
+    The slope of the gaps with the frame, or with the height of the tip, is left in row 1 of rows.
+    """
+    n = mesh.nodes.size
+    gap, pressure, slope, change = work[0, :n], work[1, :n], work[2, :n], work[3]
+    column, lean, radii = rows[0], rows[1, :n], rows[2, :n]
+    scratch, weights = rows[3, :n], rows[4, :6]
+    scale, lever = 1.0 / (frame * compliance), spring / (frame * frame)
+    for i in range(n):
+        scratch[i] = u[i] - v[i]
+    multiply(mesh.stiffness, scratch, change[:n])
+    change[n] = column[n] = 0.0
+    if lifts > 0:
+        for i in range(n):
+            lean[i] = 1.0
+            column[i] = mesh.masses[i] * slope[i]
+    else:
+        find_lean(profile, tip_parameters, mesh, frame, radii, scratch, lean)
+        multiply(mesh.stiffness, slide, column[:n])
+        for i in range(n):
+            leant = mesh.masses[i] * slope[i] * lean[i]
+            column[i] = leant - scale * (change[i] / frame + column[i])
+            column[n] -= leant
+    for i in range(n):
+        push = mesh.masses[i] * pressure[i]
+        change[i] = -(change[i] * scale + push)
+        change[n] += push
+    border = lever
+    if lever > 0.0:
+        tail, draw = integrate_beyond_mesh(gap[n - 1], rise, mesh, law, parameters, far_work)
+        change[n] += tail - lever * (u[n] - rest)
+        column[n] -= 2.0 * lever / frame * (u[n] - rest)
+        border += draw
+    assemble(mesh, scale, slope, 0.0, border, hessian)
+    first = lay_phase(mesh, weights)
+    off, moved = edge_gap, 0.0
+    for m in range(6):
+        off -= weights[m] * gap[first + m]
+        moved += weights[m] * lean[first + m]
+    _hold_edge(mesh, slope, first, weights, off, moved, hessian, change, column)
+    return moved
 
 
 @compile_for(
@@ -108,48 +157,20 @@ def ride(
             return -1
     previous = FARTHEST_RIDING_GUESS
     for iteration in range(1, (MOST_LANDING if lifts > 0 else MOST_ITERATIONS) + 1):
-        scale, lever = 1.0 / (frame * compliance), spring / (frame * frame)
         law(gap, parameters, pressure, slope, n)
-        for i in range(n):
-            scratch[i] = u[i] - v[i]
-        multiply(mesh.stiffness, scratch, change[:n])
-        change[n] = column[n] = 0.0
-        if lifts > 0:
-            for i in range(n):
-                lean[i] = 1.0
-                column[i] = mesh.masses[i] * slope[i]
-        else:
-            find_lean(profile, tip_parameters, mesh, frame, radii, scratch, lean)
-            multiply(mesh.stiffness, slide, column[:n])
-            for i in range(n):
-                leant = mesh.masses[i] * slope[i] * lean[i]
-                column[i] = leant - scale * (change[i] / frame + column[i])
-                column[n] -= leant
-        for i in range(n):
-            push = mesh.masses[i] * pressure[i]
-            change[i] = -(change[i] * scale + push)
-            change[n] += push
-        border = lever
-        if size > n:
-            tail, draw = integrate_beyond_mesh(gap[n - 1], rise, mesh, law, parameters, far_work)
-            change[n] += tail - lever * (u[n] - rest)
-            column[n] -= 2.0 * lever / frame * (u[n] - rest)
-            border += draw
-        assemble(mesh, scale, slope, 0.0, border, hessian)
-        off, moved = edge_gap, 0.0
-        for m in range(6):
-            off -= weights[m] * gap[first + m]
-            moved += weights[m] * lean[first + m]
-        hold_edge(mesh, slope, first, weights, off, moved, hessian, change, column)
+        moved = _assemble(
+            u, v, slide, frame, compliance, lifts, spring, rest, rise, mesh, profile,
+            tip_parameters, law, parameters, edge_gap, hessian, work, rows, far_work,
+        )  # fmt: skip
         if not factorise(hessian, size):
             return -iteration
         solve_factorised(hessian, change, size)
         solve_factorised(hessian, column, size)
         if size == n:
             change[n] = column[n] = 0.0
-        top, bottom = off - change[n], moved - column[n]
+        top, bottom = edge_gap - change[n], moved - column[n]
         for m in range(6):
-            top += weights[m] * change[first + m]
+            top += weights[m] * (change[first + m] - gap[first + m])
             bottom += weights[m] * column[first + m]
         clock.stability = bottom / moved
         step = top / bottom

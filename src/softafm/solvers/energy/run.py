@@ -235,6 +235,7 @@ class Run:
             *surface.functions[:-1], surface.parameters, surface.background, surface.mesh,
             surface.table, controls, surface.fields, surface.clock, surface.lever_state,
             surface.lag_energy, records, shapes, surface.room(),
+            np.empty(surface.mesh.nodes.size + 2, np.int64),
         )  # fmt: skip
         if outcome == TABULATE:
             surface.tabulate(float(surface.clock["wanted"]))

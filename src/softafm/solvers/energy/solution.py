@@ -100,7 +100,8 @@ def solve_riding(
 
 @inline
 def solve_tracing(
-    trial, profile, law, parameters, background, mesh, controls, fields, clock, work, room
+    trial, profile, law, parameters, background, mesh, controls, fields, clock, work, room,
+    pivots,
 ):  # fmt: skip
     """As ``solve_riding``, with a memory that rides too."""
     n, elements = mesh.nodes.size, parameters.retardation.size
@@ -124,7 +125,7 @@ def solve_tracing(
         profile, law, parameters.tip, parameters.law, parameters.compliance,
         parameters.retardation, work.weights, background, mesh, fields, clock, controls.edge_gap,
         CLOSEST * controls.edge_gap, RIDING_ERROR * controls.newton, work.u, work.load_new,
-        work.past[1:], work.lags, room,
+        work.past[1:], work.lags, room, pivots,
     )  # fmt: skip
     clock.newtons += abs(iterations)
     for m in range(elements):

@@ -38,6 +38,7 @@ from softafm.solvers.energy.layout import (
     MEMORY,
     MESH,
     PARAMETERS,
+    PIVOTS,
     RECORDS,
     REMESH,
     ROOM,
@@ -82,7 +83,7 @@ TRACES = 2
 
 
 @inline
-def judge(trial, force, parameters, mesh, controls, clock, work, room):
+def judge(trial, force, parameters, mesh, controls, clock, work, room, pivots):
     """Error of a solved step, in units of the one aimed at."""
     n, elements = mesh.nodes.size, parameters.retardation.size
     u, gap, history = work.u, work.newton[0], trial.history
@@ -109,7 +110,9 @@ def judge(trial, force, parameters, mesh, controls, clock, work, room):
         miss = work.newton[3]
         if trial.rides == TRACES:
             bends = 1 if trial.lever > 0.0 else 0
-            answer_shift(work.scratch, parameters.compliance[0], bends, mesh, miss, room)
+            answer_shift(
+                work.scratch, parameters.compliance[0], trial.frame, bends, mesh, miss, room, pivots
+            )
             miss[n] = 0.0
         else:
             for i in range(n):
@@ -209,12 +212,12 @@ def move_clock(clock, step, frame, edge, force, deflection):
     types.UniTuple(int64, 2)(
         pointer_to(HEIGHT), pointer_to(PROFILE), pointer_to(PRESSURE), pointer_to(RESPONSE),
         pointer_to(ACCEPTANCE), PARAMETERS, BACKGROUND, MESH, TABLE, CONTROLS, MATRIX, CLOCK,
-        VECTOR, VECTOR, RECORDS, MATRIX, ROOM,
+        VECTOR, VECTOR, RECORDS, MATRIX, ROOM, PIVOTS,
     ),
 )  # fmt: skip
 def advance(
     height, profile, law, respond, accept_force, parameters, background, mesh, table, controls,
-    fields, clock, lever_state, lag_energy, records, shapes, room,
+    fields, clock, lever_state, lag_energy, records, shapes, room, pivots,
 ):  # fmt: skip
     """Step the surface in time until ``controls.end``, full records, a need to remesh, TABULATE: a
     frame is wanted whose stiffness the table does not reach, or FALL: no stable shape within the
@@ -256,7 +259,7 @@ def advance(
         if rides == TRACES:
             trial, found = solve_tracing(
                 trial, profile, law, parameters, background, mesh, controls, fields, clock, work,
-                room,
+                room, pivots,
             )  # fmt: skip
             tabulated = -1.0
         elif rides > 0:
@@ -279,7 +282,7 @@ def advance(
             work.newton[1, :n], work.newton[0, :n], work.rise, mesh, trial.frame, law,
             parameters.law, work.far,
         )  # fmt: skip
-        error = judge(trial, force, parameters, mesh, controls, clock, work, room)
+        error = judge(trial, force, parameters, mesh, controls, clock, work, room, pivots)
         growth = SAFETY * max(error, 1e-6) ** (-1.0 / trial.history)
         if error > REFUSED and step > shortest:
             clock.step = max(step * max(LEAST_RETRY, growth), 0.999 * shortest)

@@ -18,7 +18,7 @@ from math import asinh, exp, sqrt
 
 from numba import float64, int64
 
-from softafm.compiled.dense import factorise_any, multiply, solve_any
+from softafm.compiled.dense import factorise_general, multiply, solve_general
 from softafm.compiled.functions import PRESSURE, PROFILE, compile_for, inline, pointer_to
 from softafm.solvers.energy.equilibrium import integrate_beyond_mesh, raise_tip
 from softafm.solvers.energy.layout import (
@@ -29,6 +29,7 @@ from softafm.solvers.energy.layout import (
     MATRIX,
     MEMORY,
     MESH,
+    PIVOTS,
     ROOM,
     VECTOR,
 )
@@ -189,162 +190,201 @@ def follow_load(
             displaced[i] += compliance[m + 1] * (known[m, i] + gained[m, i])
 
 
+@inline
+def _displace(
+    step, frame, base, profile, tip_parameters, compliance, retardation, filters, background,
+    mesh, fields, clock, u, load_new, known, gained, room,
+):  # fmt: skip
+    """Shape, gaps and their slope with the frame, rows 7 and 11 of ``room.rows``, under a load.
+
+    The memory rides to the frame, ``room.gain`` is what a change of the load adds to it.
+    """
+    n, elements = mesh.nodes.size, retardation.size
+    rows = room.rows
+    displaced, tip, scratch, path = rows[3, :n], rows[4, :n], rows[6, :n], rows[10, :6]
+    lean, radii, later = rows[11, :n], rows[12, :n], rows[15, :n]
+    raise_tip(profile, tip_parameters, mesh, frame, scratch, tip, room.far[0])
+    find_lean(profile, tip_parameters, mesh, frame, radii, scratch, lean)
+    apart = 1e-3 * mesh.edge_spacing * frame
+    follow_load(
+        step, frame + apart, clock, compliance, retardation, mesh, fields, filters, 0, load_new,
+        room.gain, known, gained, later, path,
+    )  # fmt: skip
+    follow_load(
+        step, frame, clock, compliance, retardation, mesh, fields, filters, 1, load_new,
+        room.gain, known, gained, displaced, path,
+    )  # fmt: skip
+    shifting, old = room.fields[2:9], room.fields[10 + elements : 10 + 2 * elements]
+    recall(background, clock.time + step, frame, retardation, mesh.nodes, shifting, old)
+    for i in range(n):
+        lean[i] += (later[i] - displaced[i]) / apart
+        below = compliance[0] * load_new[i] + displaced[i]
+        for m in range(elements):
+            below += compliance[m + 1] * old[m, i]
+        u[i] = -below
+        rows[7, i] = base + tip[i] + u[n] + below
+
+
+@inline
+def _assemble(frame, instant, edge_gap, mesh, load_new, room, last):
+    """System of the changes of load, deflection (left out) and frame; its right-hand side."""
+    n, rows, system, gain = mesh.nodes.size, room.rows, room.system, room.gain
+    gap, pressure, slope, lean = rows[7], rows[8], rows[9], rows[11]
+    strain, weights, change = rows[1, :n], rows[14, :6], room.change[0]
+    multiply(mesh.stiffness, load_new, strain)
+    for i in range(n):
+        push = mesh.masses[i] * slope[i]
+        row, stiff, answer = system[i], mesh.stiffness[i], gain[i]
+        for j in range(n):
+            row[j] = push * answer[j] - stiff[j] / frame
+        row[i] += push * instant
+        row[n] = push
+        row[last] = strain[i] / (frame * frame) + push * lean[i]
+        change[i] = strain[i] / frame - mesh.masses[i] * pressure[i]
+    first = lay_phase(mesh, weights)
+    # Of the size of the other rows, as pivots are compared.
+    size = mesh.stiffness[first, first] / (frame * instant)
+    phase, off, moved = system[last], edge_gap, 0.0
+    for j in range(n):
+        phase[j] = 0.0
+    for m in range(6):
+        i = first + m
+        for j in range(n):
+            phase[j] += size * weights[m] * gain[i, j]
+        phase[i] += size * weights[m] * instant
+        off -= weights[m] * gap[i]
+        moved += weights[m] * lean[i]
+    phase[n] = size
+    phase[last] = size * moved
+    change[last] = size * off
+
+
+@inline
+def _assemble_lever(frame, instant, lever, deflection, rest, mesh, law, parameters, room):
+    """Row of the balance of the lever, and its right-hand side."""
+    n, rows, gain = mesh.nodes.size, room.rows, room.gain
+    gap, pressure, slope, lean = rows[7], rows[8], rows[9], rows[11]
+    row = room.system[n]
+    pull, draw = integrate_beyond_mesh(gap[n - 1], room.far[0], mesh, law, parameters, room.far[1:])
+    border, leaning = lever + draw, -2.0 * lever / frame * (deflection - rest)
+    for j in range(n):
+        row[j] = 0.0
+    for i in range(n):
+        push, answer = mesh.masses[i] * slope[i], gain[i]
+        for j in range(n):
+            row[j] -= push * answer[j]
+        row[i] -= push * instant
+        border -= push
+        leaning -= push * lean[i]
+        pull += mesh.masses[i] * pressure[i]
+    row[n], row[n + 1] = border, leaning
+    room.change[0, n] = pull - lever * (deflection - rest)
+
+
+@inline
+def _change_gaps(instant, mesh, room, last, out):
+    """Change of the gaps, into ``out``, by the changes of load, deflection and frame."""
+    n, change, lean = mesh.nodes.size, room.change[0], room.rows[11]
+    multiply(room.gain, change[:n], out)
+    bent = change[n] if last > n else 0.0
+    for i in range(n):
+        out[i] += instant * change[i] + bent + lean[i] * change[last]
+
+
 @compile_for(
     int64(
         float64, float64, float64, float64, float64, pointer_to(PROFILE), pointer_to(PRESSURE),
         VECTOR, VECTOR, VECTOR, VECTOR, MATRIX, BACKGROUND, MESH, MATRIX, CLOCK, float64, float64,
-        float64, VECTOR, VECTOR, MATRIX, MATRIX, ROOM,
+        float64, VECTOR, VECTOR, MATRIX, MATRIX, ROOM, PIVOTS,
     ),
 )  # fmt: skip
 def trace(
     step, guessed_frame, base, spring, rest, profile, law,
     tip_parameters, parameters, compliance, retardation, filters, background, mesh, fields, clock,
-    edge_gap, smallest_gap, accuracy, u, load_new, known, gained, room,
+    edge_gap, smallest_gap, accuracy, u, load_new, known, gained, room, pivots,
 ):  # fmt: skip
     """Newton's method for load, deflection and frame from a good guess, in place.
 
     ``base`` is the height of an unbent lever's tip, m, from the origin of gaps; ``load_new`` the
     guessed load, q, and ``u[n]`` the guessed deflection; the rest as of ``ride``. Leaves the shape
-    in u, memory in ``known`` + ``gained``, gap and pressure in rows 7 and 8 of ``room.rows``, the
-    tip's rise beyond the mesh in ``room.far``, the factor in ``room.system`` and ``room.order``,
-    and what it has found in ``clock.found``. Returns the iterations, negative if no stable shape is
-    near the guess.
+    in u, memory in ``known`` + ``gained``, gap and pressure in rows 7 and 8 of the room's rows, the
+    tip's rise beyond the mesh in its ``far``, the factor in its ``system`` and ``pivots``, and what
+    it has found in ``clock.found``. Returns the iterations, negative if no stable shape is near the
+    guess.
     """
-    n, elements = mesh.nodes.size, retardation.size
-    bends = spring > 0.0
-    size = n + 2 if bends else n + 1
-    last = size - 1
-    rows, system, gain = room.rows, room.system, room.gain
-    gap, pressure, slope, change = rows[7, :n], rows[8, :n], rows[9, :n], room.order[1]
-    lean, radii, scratch, weights = rows[11, :n], rows[12, :n], rows[13, :n], rows[14, :6]
-    tip, displaced, later, strain = rows[4, :n], rows[3, :n], rows[15, :n], rows[1, :n]
-    path = rows[10, :6]
-    shifting, old = room.fields[2:9], room.fields[10 + elements : 10 + 2 * elements]
-    rise, far_work = room.far[0], room.far[1:]
-    first = lay_phase(mesh, weights)
+    n, bends = mesh.nodes.size, spring > 0.0
+    last = n + 1 if bends else n
+    order = pivots[: last + 1]
+    gap, pressure, slope = room.rows[7, :n], room.rows[8, :n], room.rows[9, :n]
+    change, by = room.change[0], room.rows[13, :n]
     frame, previous, instant = guessed_frame, FARTHEST_RIDING_GUESS, compliance[0]
     for iteration in range(1, MOST_ITERATIONS + 1):
-        raise_tip(profile, tip_parameters, mesh, frame, scratch, tip, rise)
-        find_lean(profile, tip_parameters, mesh, frame, radii, scratch, lean)
-        apart = 1e-3 * mesh.edge_spacing * frame
-        follow_load(
-            step, frame + apart, clock, compliance, retardation, mesh, fields, filters, 0, load_new,
-            gain, known, gained, later, path,
-        )  # fmt: skip
-        follow_load(
-            step, frame, clock, compliance, retardation, mesh, fields, filters, 1, load_new,
-            gain, known, gained, displaced, path,
+        _displace(
+            step, frame, base, profile, tip_parameters, compliance, retardation, filters,
+            background, mesh, fields, clock, u, load_new, known, gained, room,
         )  # fmt: skip
         for i in range(n):
-            lean[i] += (later[i] - displaced[i]) / apart
-        recall(background, clock.time + step, frame, retardation, mesh.nodes, shifting, old)
-        for m in range(elements):
-            for i in range(n):
-                displaced[i] += compliance[m + 1] * old[m, i]
-        for i in range(n):
-            u[i] = -(instant * load_new[i] + displaced[i])
-            gap[i] = base + tip[i] + u[n] - u[i]
             if not gap[i] > smallest_gap:
                 return -iteration
         law(gap, parameters, pressure, slope, n)
-        multiply(mesh.stiffness, load_new, strain)
-        lever = spring / (frame * frame)
-        for i in range(n):
-            push = mesh.masses[i] * slope[i]
-            row, stiff, answer = system[i], mesh.stiffness[i], gain[i]
-            for j in range(n):
-                row[j] = push * answer[j] - stiff[j] / frame
-            row[i] += push * instant
-            row[n] = push
-            row[last] = strain[i] / (frame * frame) + push * lean[i]
-            change[i] = strain[i] / frame - mesh.masses[i] * pressure[i]
-        phase, off, moved = system[last], edge_gap, 0.0
-        for j in range(n):
-            phase[j] = 0.0
-        for m in range(6):
-            i = first + m
-            for j in range(n):
-                phase[j] += weights[m] * gain[i, j]
-            phase[i] += weights[m] * instant
-            off -= weights[m] * gap[i]
-            moved += weights[m] * lean[i]
-        phase[n] = 1.0
-        phase[last] = moved
-        change[last] = off
+        _assemble(frame, instant, edge_gap, mesh, load_new, room, last)
         if bends:
-            tail, draw = integrate_beyond_mesh(gap[n - 1], rise, mesh, law, parameters, far_work)
-            row = system[n]
-            pull, border, leaning = tail, lever + draw, -2.0 * lever / frame * (u[n] - rest)
-            for j in range(n):
-                row[j] = 0.0
-            for i in range(n):
-                push, answer = mesh.masses[i] * slope[i], gain[i]
-                for j in range(n):
-                    row[j] -= push * answer[j]
-                row[i] -= push * instant
-                border -= push
-                leaning -= push * lean[i]
-                pull += mesh.masses[i] * pressure[i]
-            row[n], row[last] = border, leaning
-            change[n] = pull - lever * (u[n] - rest)
-        sign = factorise_any(system, room.order[0], size)
-        if n % 2 == 1:
-            sign = -sign
-        if sign == 0.0:
+            lever = spring / (frame * frame)
+            _assemble_lever(frame, instant, lever, u[n], rest, mesh, law, parameters, room)
+        # Of n loads that press up, as many rows have another sign than in Newton's own system.
+        sign = factorise_general(room.system, order) * (1 - 2 * (n % 2))
+        if sign == 0:
             return -iteration
-        solve_any(system, room.order[0], change, size)
-        stepped, bent = change[last], 0.0
-        if bends:
-            bent = change[n]
-        multiply(gain, change[:n], scratch)
-        largest = OF_THE_EDGE * abs(stepped) / frame
+        solve_general(room.system, order, change)
+        _change_gaps(instant, mesh, room, last, by)
+        moved = change[last]
+        largest = OF_THE_EDGE * abs(moved) / frame
         for i in range(n):
-            by = scratch[i] + instant * change[i] + bent + lean[i] * stepped
-            largest = max(largest, abs(by) / gap[i])
+            largest = max(largest, abs(by[i]) / gap[i])
         if not largest < previous:
             return -iteration
-        frame += stepped
-        u[n] += bent
+        frame += moved
+        if bends:
+            u[n] += change[n]
         for i in range(n):
             load_new[i] += change[i]
-        clock.found, clock.stability = frame, sign
+        clock.found, clock.stability = frame, float(sign)
         if largest < accuracy:
             # The last correction is so small that it counts to first order.
+            tip, path = room.rows[4, :n], room.rows[10, :6]
+            raise_tip(profile, tip_parameters, mesh, frame, room.rows[6, :n], tip, room.far[0])
             for i in range(n):
-                gap[i] += scratch[i] + instant * change[i] + bent + lean[i] * stepped
-            raise_tip(profile, tip_parameters, mesh, frame, scratch, tip, rise)
-            for i in range(n):
+                gap[i] += by[i]
                 u[i] = base + tip[i] + u[n] - gap[i]
             law(gap, parameters, pressure, slope, n)
             follow_load(
                 step, frame, clock, compliance, retardation, mesh, fields, filters, 0, load_new,
-                gain, known, gained, displaced, path,
+                room.gain, known, gained, room.rows[3, :n], path,
             )  # fmt: skip
-            return iteration if sign > 0.0 else -iteration
+            return iteration if sign > 0 else -iteration
         previous = largest
     return -MOST_ITERATIONS
 
 
-@compile_for((VECTOR, float64, int64, MESH, VECTOR, ROOM))
-def answer_shift(shift, instant, bends, mesh, gaps, room):
+@compile_for((VECTOR, float64, float64, int64, MESH, VECTOR, ROOM, PIVOTS))
+def answer_shift(shift, instant, frame, bends, mesh, gaps, room, pivots):
     """Change of the gaps, into ``gaps``, by a small ``shift`` of the surface away from the tip, m.
 
     From what ``trace`` left.
     """
     n = mesh.nodes.size
-    size = n + 2 if bends > 0 else n + 1
-    slope, lean, weights, change = room.rows[9], room.rows[11], room.rows[14, :6], room.order[1]
-    change[n] = change[size - 1] = 0.0
+    slope, weights, change = room.rows[9], room.rows[14, :6], room.change[0]
+    change[n] = 0.0
     for i in range(n):
         push = mesh.masses[i] * slope[i] * shift[i]
         change[i] = -push
         change[n] += push
-    first = lay_phase(mesh, weights)
-    change[size - 1] = 0.0
+    first, last = lay_phase(mesh, weights), n + 1 if bends > 0 else n
+    kept = 0.0
     for m in range(6):
-        change[size - 1] -= weights[m] * shift[first + m]
-    solve_any(room.system, room.order[0], change, size)
-    multiply(room.gain, change[:n], gaps[:n])
-    bent = change[n] if bends > 0 else 0.0
+        kept -= weights[m] * shift[first + m]
+    change[last] = kept * mesh.stiffness[first, first] / (frame * instant)
+    solve_general(room.system, pivots[: last + 1], change)
+    _change_gaps(instant, mesh, room, last, gaps[:n])
     for i in range(n):
-        gaps[i] += shift[i] + instant * change[i] + bent + lean[i] * change[size - 1]
+        gaps[i] += shift[i]

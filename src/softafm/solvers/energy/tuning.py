@@ -34,8 +34,8 @@ FARTHEST_RIDING_GUESS = 5.0
 it made no difference."""
 
 LARGEST_LANDING, MOST_LANDING = 0.5, 40
-"""Largest relative change of a gap in an iteration towards a contact guessed from afar, and how many
-of them may be taken."""
+"""Largest relative change of a gap in an iteration towards a contact guessed from afar, and how
+many of them may be taken."""
 
 RIDING_ERROR = 0.1
 """Error of an equilibrium that is solved with its edge, in units of the other ones'."""
@@ -120,7 +120,7 @@ SLACKER = 12.0
 """Tabor number of the softened sample from which on that pays: such a step costs 15 others."""
 
 FIRST_PANEL, NEXT_PANEL = 0.8, 2.2
-"""Width of the last panel of a step, in the shortest retardation time, and the ratio of the next."""
+"""Width of the last panel of a step, in the shortest retardation time, and the next one's ratio."""
 
 FORGOTTEN_TIMES = 25.0
 """Longest retardation times after which nothing is left of a load, to 1e-11."""
@@ -145,8 +145,8 @@ GROWTH = 0.3
 did not help": 0.45 slips in slack contacts)."""
 
 SLACK = 3.0
-"""Tabor number of the softened sample from which on the edge of a contact yields to small errors, so
-that it is solved for together with the surface."""
+"""Tabor number of the softened sample from which on the edge of a contact yields to small errors,
+so that it is solved for together with the surface."""
 
 FINER_THAN_NEEDED, COARSER_THAN_NEEDED = 0.35, 1.3
 """Spacing, in units of the one aimed at, at which the mesh is exchanged: more than a factor of two
