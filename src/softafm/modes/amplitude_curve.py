@@ -67,9 +67,9 @@ class AmplitudeCurve:
         step = (amplitudes[1] - amplitudes[0]) / 2
         return self._solutions(row, amplitude, heights[row] - amplitude, step)
 
-    def observables(self, solutions: Solutions) -> np.ndarray:
-        """Observables of solutions, shape (7, n)."""
-        return self._taps.observables(solutions.amplitude, solutions.approach)
+    def observables(self, amplitude: ArrayLike, approach: ArrayLike) -> np.ndarray:
+        """Observables at amplitudes and closest approaches, m, shape (7, n)."""
+        return self._taps.observables(amplitude, approach)
 
     @property
     def lowest(self) -> float:

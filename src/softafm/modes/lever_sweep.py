@@ -14,25 +14,34 @@ from softafm.modes.amplitude_curve import AmplitudeCurve
 
 LOW, HIGH = 0, 1
 """Ends of the range of amplitudes."""
-_DURATION, _INSTANTS = 100, 200
-"""For how many times Q a lever may drift, and how often it is looked at."""
+_SOONEST, _LATEST, _INSTANTS, _LAST = 1e-2, 1e3, 200, 20
+"""Times, in Q, between which a drifting lever is looked at, how often, and at how many instants it
+must stand still at the end."""
 _MARGIN, _AMPLITUDES = 0.1, 600
 """How far the amplitude may go beyond an end of the range on the way, relative to it, and at how
 many amplitudes taps are interpolated for that."""
+_ERROR = 1e-5
+"""Error of a drift, relative to the highest amplitude and in rad."""
 _CLOSE = 2e-3
 """Distance from a solution, relative to its amplitude, at which the lever has arrived."""
 
 
 class State(NamedTuple):
-    """Where a lever is: its ``solution`` by index, or, between solutions, −1.
+    """Where a lever is: amplitude, m, phase, degrees, and its ``solution`` by index, −1 for none.
 
-    ``outside`` is the end by which it left the range, or None.
+    ``steady`` is whether it stays there, ``outside`` the end by which it left the range, or None.
     """
 
     amplitude: float = np.nan
     phase: float = np.nan
     solution: int = -1
+    steady: bool = False
     outside: int | None = None
+
+    @property
+    def recorded(self) -> float:
+        """Amplitude that is recorded, m: NaN of a lever that does not stay where it is."""
+        return self.amplitude if self.steady else np.nan
 
 
 def sweep_lever(curve: AmplitudeCurve, heights: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -44,13 +53,18 @@ def sweep_lever(curve: AmplitudeCurve, heights: np.ndarray) -> tuple[np.ndarray,
     """
     sweep = LeverSweep(curve, heights)
     down = sweep.follow(range(heights.size), State(outside=HIGH))
-    up, known = np.full(heights.size, -1), np.flatnonzero(down >= 0)
-    if known.size:
-        up = sweep.follow(range(known[-1], -1, -1), sweep.at(down[known[-1]]))
-    found = sweep.found
-    columns = np.vstack([found.amplitude, found.phase, curve.observables(found)])
-    columns = np.hstack([columns, np.full((len(columns), 1), np.nan)])  # for the index −1
-    return columns[:, down], columns[:, up]
+    up, known = {}, [row for row, state in down.items() if state.steady]
+    if known:
+        up = sweep.follow(range(known[-1], -1, -1), down[known[-1]])
+    return _record(curve, heights, down), _record(curve, heights, up)
+
+
+def _record(curve: AmplitudeCurve, heights: np.ndarray, states: dict[int, State]) -> np.ndarray:
+    """Amplitude, phase and observables of a lever at heights, m, (9, n); NaN where it is lost."""
+    unknown = State()
+    amplitude = np.array([states.get(row, unknown).recorded for row in range(heights.size)])
+    values = curve.observables(amplitude, heights - amplitude)
+    return np.vstack([amplitude, curve.drive.phase(amplitude, *values[:2]), values])
 
 
 class LeverSweep:
@@ -66,10 +80,11 @@ class LeverSweep:
 
     def at(self, solution: int) -> State:
         """State of a lever at a solution."""
-        return State(self.found.amplitude[solution], self.found.phase[solution], int(solution))
+        found = self.found
+        return State(found.amplitude[solution], found.phase[solution], int(solution), True)
 
-    def follow(self, way: Iterable[int], state: State) -> np.ndarray:
-        """Index of the solution taken in each row, −1 where none is known or the way does not go.
+    def follow(self, way: Iterable[int], state: State) -> dict[int, State]:
+        """States of the lever by row.
 
         Parameters
         ----------
@@ -78,15 +93,15 @@ class LeverSweep:
         state
             That of the lever in the first row, or before it.
         """
-        taken = np.full(self._heights.size, -1)
+        states: dict[int, State] = {}
         before = None
         for row in way:
             if state.outside is not None:
                 state = self._enter(state.outside, before, row)
-            elif state.solution not in self._rows[row]:
+            elif before is not None:
                 state = self._keep(state.solution, before, row) or self._drift(state, row)
-            taken[row], before = state.solution, row
-        return taken
+            states[row], before = state, row
+        return states
 
     def _enter(self, end: int, before: int | None, row: int) -> State:
         """State in a row of a lever that left the range by an end.
@@ -123,24 +138,25 @@ class LeverSweep:
 
     def _drift(self, state: State, row: int) -> State:
         """State at which a lever arrives if it is left alone at the height of a row."""
-        amplitude, phase, gone = self._drift_to(state, self._heights[row])
-        if gone is not None:
-            return State(outside=gone)
-        here = self._rows[row][self.found.stable[self._rows[row]]]
+        amplitudes, phase = self._path(state, self._heights[row])
+        low, high = self._curve.lowest, self._curve.highest
+        beyond = (amplitudes < (1 - _MARGIN) * low) | (amplitudes > (1 + _MARGIN) * high)
+        amplitude = float(amplitudes[beyond.argmax()] if beyond.any() else amplitudes[-1])
+        if amplitude < low or amplitude > high:
+            return State(outside=LOW if amplitude < low else HIGH)
+        close, here = _CLOSE * amplitude, self._rows[row][self.found.stable[self._rows[row]]]
         if here.size:
             off = np.abs(self.found.amplitude[here] - amplitude)
-            if off.min() < _CLOSE * amplitude:
+            if off.min() < close:
                 return self.at(here[off.argmin()])
-        if amplitude < self._curve.lowest or amplitude > self._curve.highest:
-            return State(outside=LOW if amplitude < self._curve.lowest else HIGH)
-        return State(amplitude, phase)
+        return State(amplitude, phase, steady=bool(np.ptp(amplitudes[-_LAST:]) < close))
 
-    def _drift_to(self, state: State, height: float) -> tuple[float, float, int | None]:
-        """Amplitude and phase at the end of a drift, and the end by which it left what is known."""
+    def _path(self, state: State, height: float) -> tuple[np.ndarray, float]:
+        """Amplitudes on the way of a drift, m, and the phase at its end."""
         from scipy.integrate import odeint
 
         curve, drive = self._curve, self._curve.drive
-        low, high = (1 - _MARGIN) * curve.lowest, (1 + _MARGIN) * curve.highest
+        low, high = (1 - 2 * _MARGIN) * curve.lowest, (1 + 2 * _MARGIN) * curve.highest
         amplitudes = np.linspace(low, high, _AMPLITUDES)
         in_phase, behind = drive.components(amplitudes, *curve.tapped(amplitudes, height))
         needed = in_phase + 1j * behind
@@ -152,8 +168,7 @@ class LeverSweep:
             return grows / high, turns
 
         start = state.amplitude / high, np.radians(state.phase)
-        instants = np.linspace(0, _DURATION * drive.quality_factor, _INSTANTS)
-        path = odeint(rates, start, instants, mxstep=100_000)
-        outside = np.flatnonzero((path[:, 0] * high < low) | (path[:, 0] > 1))
-        gone = None if not outside.size else HIGH if path[outside[0], 0] > 1 else LOW
-        return path[-1, 0] * high, np.degrees(path[-1, 1]), gone
+        instants = drive.quality_factor * np.geomspace(_SOONEST, _LATEST, _INSTANTS)
+        instants[0] = 0.0
+        path = odeint(rates, start, instants, rtol=_ERROR, atol=_ERROR, mxstep=100_000)
+        return path[:, 0] * high, float(np.degrees(path[-1, 1]))
