@@ -26,9 +26,10 @@ from softafm.indentation.adhesive import (
     jkr_parting,
     jkr_pull_off,
 )
+from softafm.indentation.at_depth import contact_radius, force
 from softafm.indentation.cohesive_zone import maugis, maugis_parting
 from softafm.indentation.curve import Curve, Parting
-from softafm.indentation.elastic import contact_radius, depth, force, hertz_force, load
+from softafm.indentation.elastic import depth, hertz_force, load
 from softafm.indentation.viscoelastic import lee_radok, ting
 
 __all__ = [

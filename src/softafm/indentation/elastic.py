@@ -12,9 +12,10 @@ from softafm.indentation.check import check_modulus, check_not_negative
 if TYPE_CHECKING:
     from softafm.tips import Tip
 
-_POINTS, _WEIGHTS = np.polynomial.legendre.leggauss(16)
+_FINE, _COARSE = (np.polynomial.legendre.leggauss(n) for n in (16, 5))
+_FEW = 12
+"""Joints up to which panels between them are wide enough to need the finer rule."""
 _PANELS = pi / 2 * np.append(0.0, 4.0 ** np.arange(-16, 1))
-_HALVINGS = 52
 
 
 def depth(tip: "Tip", contact_radius: ArrayLike) -> np.ndarray:
@@ -53,35 +54,6 @@ def load(tip: "Tip", contact_radius: ArrayLike, modulus: float) -> np.ndarray:
     return (2 * modulus * radius**2 * _average_slopes(tip, radius)[1])[()]
 
 
-def contact_radius(tip: "Tip", depth: ArrayLike) -> np.ndarray:
-    """Contact radius at which ``tip`` is ``depth`` (m) deep without adhesion, m; 0 above 0 m.
-
-    Raises
-    ------
-    ValueError
-        If a depth is not finite.
-    """
-    deep = np.asarray(depth, float)
-    if not np.all(np.isfinite(deep)):
-        raise ValueError(f"depth = {deep[~np.isfinite(deep)].flat[0]} m: must be a finite number")
-    # As δ(a) ≥ g(a), the contact is no wider than the tip at that height.
-    widest = [tip.radius_at(each) if each > 0 else 0.0 for each in deep.flat]
-    low, high = np.zeros(deep.shape), np.array(widest).reshape(deep.shape)
-    for _ in range(_HALVINGS):
-        middle = (low + high) / 2
-        shallow = middle * _average_slopes(tip, middle)[0] <= deep
-        low, high = np.where(shallow, middle, low), np.where(shallow, high, middle)
-    return low[()]
-
-
-def force(tip: "Tip", depth: ArrayLike, modulus: float) -> np.ndarray:
-    """Force on ``tip`` when it is ``depth`` (m) deep without adhesion, N; 0 above 0 m.
-
-    ``modulus`` is the reduced E*, Pa. Refusals are those of ``contact_radius`` and ``load``.
-    """
-    return load(tip, contact_radius(tip, depth), modulus)
-
-
 def hertz_force(radius: float, depth: ArrayLike, modulus: float) -> np.ndarray:
     """Force on a paraboloid of apex ``radius`` R (m), (4/3) E* √R δ^(3/2), N; 0 above 0 m.
 
@@ -105,10 +77,12 @@ def _average_slopes(tip: "Tip", radius: np.ndarray) -> tuple[np.ndarray, np.ndar
     that are much sharper than the contact is wide.
     """
     wide = np.where(radius > 0, radius, 1.0)[..., None]
-    joints = np.arcsin(np.minimum(np.array(tip.joints) / wide, 1.0))
+    joints = np.array([joint for joint in tip.joints if joint < radius.max(initial=0.0)])
+    points, weights = _FINE if joints.size <= _FEW else _COARSE
+    joints = np.arcsin(np.minimum(joints / wide, 1.0))
     panels = np.broadcast_to(_PANELS, (*radius.shape, _PANELS.size))
     edges = np.sort(np.concatenate([panels, joints], axis=-1), axis=-1)
     middle, half = (edges[..., 1:] + edges[..., :-1]) / 2, np.diff(edges, axis=-1) / 2
-    sine = np.sin(middle[..., None] + half[..., None] * _POINTS)
-    weighted = half[..., None] * _WEIGHTS * tip.slope(wide[..., None] * sine)
+    sine = np.sin(middle[..., None] + half[..., None] * points)
+    weighted = half[..., None] * weights * tip.slope(wide[..., None] * sine)
     return weighted.sum((-2, -1)), (weighted * sine**2).sum((-2, -1))

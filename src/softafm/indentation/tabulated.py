@@ -18,6 +18,8 @@ _GRADES = 4.0 ** -np.arange(1, 12)
 _GRADES = np.concatenate([-_GRADES, [0.0], _GRADES])
 _FEW = 8
 """Number of joints up to which panels become finer towards each of them."""
+_MOST = 100
+"""Joints that are edges of panels, where there are more."""
 _HALVINGS = 60
 
 
@@ -59,10 +61,11 @@ class Depths:
 
     @property
     def rough(self) -> np.ndarray:
-        """Radii, m, between which the depth is smooth: joints, and ever closer to few of them."""
+        """Radii, m, between which the depth is smooth: near few joints, or some of very many."""
         joints = np.array(self.tip.joints)
-        grades = _GRADES if joints.size <= _FEW else np.zeros(1)
-        return np.outer(joints, 1 + grades).ravel()
+        if joints.size <= _FEW:
+            return np.outer(joints, 1 + _GRADES).ravel()
+        return joints[:: -(-joints.size // _MOST)]
 
     def _tabulate(self, widest: float) -> None:
         halved = widest * np.append(0.0, 2.0 ** np.arange(np.log2(_SMALLEST), 1))
