@@ -45,7 +45,8 @@ class Audit:
     energies
         Where the energy of the motion went.
     imbalance
-        Work that nothing accounts for, as a part of its scale; None if what is stored is not known.
+        Work that nothing accounts for, as a part of its scale; None if what is stored is not known,
+        as in a sample that flows.
     lowest_force
         Force below which nothing holds a tip like this, N; None if there is no such bound.
     in_contact
@@ -96,7 +97,8 @@ def audit(
     energies = history.energies()
     lowest = _bound_force(contact)
     imbalance = None
-    if energies.spent is not None:
+    # A sample that flows keeps its dent, whose energy beyond the mesh is not known.
+    if energies.spent is not None and contact.body.compliance.fluidity == 0:
         imbalance = energies.imbalance / _find_scale(contact, history, energies)
     edge = history.contact_radius
     in_contact = bool(edge[-1] > 0 and edge[0] == 0)
