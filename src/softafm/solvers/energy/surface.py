@@ -110,7 +110,7 @@ class Surface:
         self.lag_energy = np.zeros(elements)
         self.clock = new_clock()
         self.clock["time"] = breaks[0]
-        self.clock["contraction"] = 0.0 if contact.tabor_instantaneous < 2 * SLACK else np.inf
+        self.clock["contraction"] = 0.0 if contact.tabor_instantaneous < SLACK else np.inf
         # The flat relaxed surface answers the first instant with its short-term modulus.
         first = contact.contact_radius_instantaneous(float(motion.height(breaks[0])))
         self.clock["frame"] = choose_frame(first, self.open_frame)

@@ -144,7 +144,7 @@ GROWTH = 0.3
 """Logarithmic growth of the spacing a node away from the edge (``softafm docs performance``, "What
 did not help": 0.45 slips in slack contacts)."""
 
-SLACK = 3.0
+SLACK = 6.0
 """Tabor number of the softened sample from which on the edge of a contact yields to small errors,
 so that it is solved for together with the surface."""
 
