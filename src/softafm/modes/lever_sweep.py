@@ -20,7 +20,7 @@ must stand still at the end."""
 _MARGIN, _AMPLITUDES = 0.1, 600
 """How far the amplitude may go beyond an end of the range on the way, relative to it, and at how
 many amplitudes taps are interpolated for that."""
-_ERROR = 1e-5
+_ERROR = 1e-4
 """Error of a drift, relative to the highest amplitude and in rad."""
 _CLOSE = 2e-3
 """Distance from a solution, relative to its amplitude, at which the lever has arrived."""
@@ -76,12 +76,12 @@ class LeverSweep:
         ends = np.array([[curve.lowest], [curve.highest]])
         self._weak = curve.is_too_weak(ends, heights)
         cuts = np.searchsorted(self.found.row, np.arange(1, heights.size))
-        self._rows = np.split(np.arange(self.found.row.size), cuts)
+        self._rows = [rows.tolist() for rows in np.split(np.arange(self.found.row.size), cuts)]
+        self._amplitude = self.found.amplitude.tolist()  # quicker one by one than from an array
 
     def at(self, solution: int) -> State:
         """State of a lever at a solution."""
-        found = self.found
-        return State(found.amplitude[solution], found.phase[solution], int(solution), True)
+        return State(self._amplitude[solution], float(self.found.phase[solution]), solution, True)
 
     def follow(self, way: Iterable[int], state: State) -> dict[int, State]:
         """States of the lever by row.
@@ -109,7 +109,7 @@ class LeverSweep:
         It comes back with a stable solution that enters there.
         """
         here = self._rows[row]
-        if here.size:
+        if here:
             entered = here[-1] if end == HIGH else here[0]
             inside = self._weak[end, row] == (end == HIGH)
             if inside and self.found.stable[entered] and self._pair(entered, row, before) is None:
@@ -126,15 +126,15 @@ class LeverSweep:
 
         Those of neighbouring heights are one if they are the nearest to each other.
         """
-        if row is None or other is None or not self._rows[other].size:
+        if row is None or other is None or not self._rows[other]:
             return None
         nearest = self._nearest(solution, other)
         return nearest if self._nearest(nearest, row) == solution else None
 
     def _nearest(self, solution: int, row: int) -> int:
         """Index of the solution of a row whose amplitude is the nearest to that of another."""
-        there, amplitude = self._rows[row], self.found.amplitude
-        return int(there[np.argmin(np.abs(amplitude[there] - amplitude[solution]))])
+        amplitude = self._amplitude
+        return min(self._rows[row], key=lambda each: abs(amplitude[each] - amplitude[solution]))
 
     def _drift(self, state: State, row: int) -> State:
         """State at which a lever arrives if it is left alone at the height of a row."""
@@ -144,11 +144,10 @@ class LeverSweep:
         amplitude = float(amplitudes[beyond.argmax()] if beyond.any() else amplitudes[-1])
         if amplitude < low or amplitude > high:
             return State(outside=LOW if amplitude < low else HIGH)
-        close, here = _CLOSE * amplitude, self._rows[row][self.found.stable[self._rows[row]]]
-        if here.size:
-            off = np.abs(self.found.amplitude[here] - amplitude)
-            if off.min() < close:
-                return self.at(here[off.argmin()])
+        close = _CLOSE * amplitude
+        for solution in self._rows[row]:
+            if abs(self._amplitude[solution] - amplitude) < close and self.found.stable[solution]:
+                return self.at(solution)
         return State(amplitude, phase, steady=bool(np.ptp(amplitudes[-_LAST:]) < close))
 
     def _path(self, state: State, height: float) -> tuple[np.ndarray, float]:
