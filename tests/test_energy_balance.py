@@ -62,6 +62,15 @@ def test_a_sample_that_flows_balances():
     assert account(result) == pytest.approx(float(result["loop_energy"]), rel=2e-3)
 
 
+@pytest.mark.parametrize(("relaxation_time", "speed"), [(1e-6, 1e-3), (1e-4, 1e-4)])
+def test_a_maxwell_fluid_balances(relaxation_time, speed):
+    """What flows away is dissipated; its dashpot stores nothing, however far it moves."""
+    fluid = sa.Maxwell(1e9, relaxation_time, 0.49)
+    contact = sa.Contact(sa.Paraboloid(50e-9), fluid, sa.LennardJones(1e-19, 0.3e-9))
+    result = sa.force_distance(contact, sa.Triangle(20e-9, -5e-9, speed))
+    assert account(result) == pytest.approx(float(result["loop_energy"]), rel=5e-3)
+
+
 def test_a_lever_counts():
     contact = sa.Contact(
         sa.Paraboloid(10e-9), sa.samples.ldpe(), sa.LennardJones(hamaker=1e-19, z0=0.25e-9)

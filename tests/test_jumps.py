@@ -45,6 +45,12 @@ def test_the_loop_of_an_elastic_contact_is_what_its_jumps_release(tabor, toleran
     assert result["jump_time"].size == 2
 
 
+@pytest.mark.parametrize("tolerance", [0.1, 0.05])
+def test_a_loose_tolerance_is_kept_in_a_slack_contact(tolerance):
+    loop = float(elastic(13, tolerance)["loop_energy"])
+    assert loop == pytest.approx(float(elastic(13, 1e-3)["loop_energy"]), rel=tolerance / 2)
+
+
 @pytest.mark.parametrize("z0", [0.12e-9, 0.15e-9, 0.2e-9])
 def test_taps_jump_as_often_at_every_tolerance(z0):
     contact = sa.Contact(

@@ -148,7 +148,8 @@ def carry_lag_energy(frame, anew, weights, left, lags, strained, stiffness, ener
         for i in range(n):
             product += left[m, i] * strained[m, i]
         kept = 0.0 if anew else weights[m, DECAY] * weights[m, DECAY] * energies[m]
-        energies[m] = kept + frame * product
+        # Where a lag has all but died away, what rounding leaves may be below zero.
+        energies[m] = max(kept + frame * product, 0.0)
 
 
 @inline

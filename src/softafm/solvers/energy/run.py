@@ -281,7 +281,7 @@ class Run:
         end = stop if duration == stop - start else start + duration
         self.end_of_slip = start + SLIPS_AGAIN * duration
         touching = edge > 0
-        record = land(surface, end, before, touching) if surface.ride_from < np.inf else None
+        record = land(surface, end, before, touching) if self.contact.adhesive else None
         if record is None:
             creep_down(self, end, duration)
         surface.functions.accept_force(

@@ -39,7 +39,6 @@ from softafm.solvers.energy.tuning import (
     FAR_SOFTER,
     FINER_THAN_NEEDED,
     GROWTH,
-    HARDLY_MOVED,
     HARDLY_SOFTER,
     HELD,
     HELD_IF_FAR_SOFTER,
@@ -47,6 +46,7 @@ from softafm.solvers.energy.tuning import (
     SLACK,
     SLACKER,
     SPACING,
+    TOO_SLOW,
     TRACE_FROM,
 )
 
@@ -87,16 +87,20 @@ class Surface:
         opens = 3 ** (1 / 6) * contact.reach if contact.adhesive else self.edge_gap
         self.open_gap = self.edge_gap + opens
         self.open_frame = contact.open_radius
-        self.accuracy = EQUILIBRIUM_ERROR * strictness
+        # Loose steps cost accuracy, a coarse mesh catches the edge: loops would be 15 % off.
+        at_least = min(strictness, 1.0)
+        self.accuracy = EQUILIBRIUM_ERROR * at_least
         sharpness = contact.surface.sharpness if contact.adhesive else 1.0
-        self.target = SPACING * strictness**0.2 / max(1.0, sharpness)
+        self.target = SPACING * at_least**0.2 / max(1.0, sharpness)
         self.growth = GROWTH * min(1.0, strictness**0.17)
         slack = contact.tabor_softened > SLACK
         self.ride_from = RIDE_FROM * self.open_frame if slack else inf
         # What a steady cycle gathers is filtered at fixed radii.
         traced = contact.tabor_softened > SLACKER and not is_steady(motion)
         self.trace_from = TRACE_FROM if traced else inf
-        duration = inf if is_steady(motion) else breaks[-1] - breaks[0]
+        period = float(breaks[-1] - breaks[0])
+        self.too_slow = TOO_SLOW[1 if is_steady(motion) else 0] * period
+        duration = inf if is_steady(motion) else period
         self.held = choose_spacing_held(self.parameters, duration)
         self.finest_level = max(0, ceil(log2(COARSEST_SPACING / finest_spacing)))
         self.level = self.first_level = self._find_level(0.4 * contact.open_width / self.open_frame)
@@ -362,12 +366,12 @@ class Surface:
 
         That of ``energy``, and ½ J_m ⟨y_m, K⁻¹ y_m⟩ of the elements. Old rims in y_m may lie on
         coarse nodes; as y_m is q less a lag, ⟨q, K⁻¹ (y_m − ½ q)⟩ and the energy of the lag is the
-        same, but of elements that have hardly moved a small difference.
+        same, but of elements too slow to move a small difference.
         """
         load, memory, frame = self.fields[LOAD], self.memory(), self.clock["frame"]
         summed = 0.5 * frame * np.sum((memory @ self.mesh.stiffness) * memory, axis=1)
         carried = frame * (memory - 0.5 * load) @ self.mesh.stiffness @ load + self.lag_energy
-        elements = np.where(summed < HARDLY_MOVED * self.lag_energy, summed, carried)
+        elements = np.where(self.parameters.retardation > self.too_slow, summed, carried)
         return self.energy() + float(2 * np.pi * self.parameters.compliance[1:] @ elements)
 
 

@@ -78,8 +78,9 @@ DAMPING = 1.5
 AS_WIDE = 0.95
 """Edge, in the widest so far, from which the memory has no old rim far outside it."""
 
-HARDLY_MOVED = 1e-2
-"""Energy of an element, in that of its lag, below which it is summed up as it is."""
+TOO_SLOW = 10.0, 1e4
+"""Retardation time, in times of the motion, beyond which the energy of an element is summed up as
+it is; of the period in steady cycles, where the element gathers the mean of the load."""
 
 # The frame that rides on the contact edge.
 
