@@ -18,7 +18,7 @@ from numba import float64, int64
 
 from softafm.compiled.dense import factorise, multiply, solve_factorised
 from softafm.compiled.functions import PRESSURE, PROFILE, compile_for, inline, pointer_to
-from softafm.solvers.energy.equilibrium import assemble, integrate_beyond_mesh
+from softafm.solvers.energy.equilibrium import assemble, integrate_beyond_mesh, raise_tip
 from softafm.solvers.energy.layout import CLOCK, MATRIX, MESH, VECTOR
 from softafm.solvers.energy.tuning import (
     FARTHEST_RIDING_GUESS,
@@ -149,7 +149,7 @@ def ride(
     size = n + 1 if spring > 0.0 else n
     gap, pressure, slope, change = work[0, :n], work[1, :n], work[2, :n], work[3]
     column, lean, radii = rows[0], rows[1, :n], rows[2, :n]
-    scratch, weights = rows[3, :n], rows[4, :6]
+    weights = rows[4, :6]
     first = lay_phase(mesh, weights)
     for i in range(n):
         gap[i] = standoff[i] + u[n] - u[i]
@@ -192,12 +192,11 @@ def ride(
         else:
             frame += step
             for i in range(n):
-                radii[i] = frame * mesh.nodes[i]
-            profile(radii, tip_parameters, scratch, n)
-            for i in range(n):
                 v[i] += slide[i] * step
-                standoff[i] += scratch[i] - tip[i]
-                tip[i] = scratch[i]
+                standoff[i] -= tip[i]
+            raise_tip(profile, tip_parameters, mesh, frame, radii, tip, rise)
+            for i in range(n):
+                standoff[i] += tip[i]
         for i in range(n):
             u[i] += change[i]
             gap[i] = standoff[i] + u[n] - u[i]

@@ -4,7 +4,7 @@ An implicit predictor-corrector method. The predictor extrapolates shape and for
 an equilibrium, and their difference, with the error of the memory, sets the length of the step.
 """
 
-from math import inf
+from math import inf, pi
 
 from numba import float64, int64, types
 
@@ -282,6 +282,9 @@ def advance(
             work.newton[1, :n], work.newton[0, :n], work.rise, mesh, trial.frame, law,
             parameters.law, work.far,
         )  # fmt: skip
+        if trial.lever > 0.0:
+            # The lever's own is the same but for what the balance misses.
+            force = 2.0 * pi * trial.frame**2 * trial.lever * (work.u[n] - trial.rest)
         error = judge(trial, force, parameters, mesh, controls, clock, work, room, pivots)
         growth = SAFETY * max(error, 1e-6) ** (-1.0 / trial.history)
         if error > REFUSED and step > shortest:
