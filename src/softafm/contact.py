@@ -180,6 +180,14 @@ class Contact:
         """Tabor number with the softened modulus: the relaxed one, or of a sample that flows."""
         return self._tabor(self.softened_modulus)
 
+    def tabor_after(self, duration: float) -> float:
+        """Tabor number with the reduced modulus that creep leaves of the sample in a time, s.
+
+        Of a sample that flows no less than its modulus when flow sets in.
+        """
+        left = 1 / float(self.body.compliance.at(duration))
+        return self._tabor(max(left, self.softened_modulus))
+
     def regularised(self, tabor: float) -> "Contact":
         """Return the contact with a law of longer range, at the same work of adhesion.
 

@@ -31,6 +31,7 @@ from softafm.solvers.energy.layout import (
 from softafm.solvers.energy.memory import recall
 from softafm.solvers.energy.stiffness import find_stiffness
 from softafm.solvers.energy.tuning import (
+    AT_ONCE,
     CLOSEST,
     COARSER_THAN_NEEDED,
     COARSEST_SPACING,
@@ -46,6 +47,7 @@ from softafm.solvers.energy.tuning import (
     SLACK,
     SLACKER,
     SPACING,
+    STEEP,
     TOO_SLOW,
     TRACE_FROM,
 )
@@ -66,6 +68,9 @@ class Surface:
         self.contact = contact
         breaks = motion.breaks
         compliance = contact.body.compliance.chain(breaks[-1] - breaks[0])
+        # An edge of a slack contact is faster than the tip by about the Tabor number.
+        fastest = motion.top_speed * max(1.0, contact.tabor_softened)
+        compliance = compliance.without_faster(AT_ONCE * strictness * contact.reach / fastest)
         height, height_parameters = motion.compiled_height
         profile, tip_parameters = contact.tip.compiled_profile
         law, potential, law_parameters = contact.surface.compiled_pressure
@@ -93,10 +98,13 @@ class Surface:
         sharpness = contact.surface.sharpness if contact.adhesive else 1.0
         self.target = SPACING * at_least**0.2 / max(1.0, sharpness)
         self.growth = GROWTH * min(1.0, strictness**0.17)
-        slack = contact.tabor_softened > SLACK
+        # Where the tip rises steeply, at the rim of a punch, it holds the edge.
+        free = contact.open_width > STEEP * self.open_frame
+        tabor = contact.tabor_after(breaks[-1] - breaks[0]) if contact.adhesive else 0.0
+        slack = free and tabor > SLACK
         self.ride_from = RIDE_FROM * self.open_frame if slack else inf
         # What a steady cycle gathers is filtered at fixed radii.
-        traced = contact.tabor_softened > SLACKER and not is_steady(motion)
+        traced = free and tabor > SLACKER and not is_steady(motion)
         self.trace_from = TRACE_FROM if traced else inf
         period = float(breaks[-1] - breaks[0])
         self.too_slow = TOO_SLOW[1 if is_steady(motion) else 0] * period

@@ -60,6 +60,10 @@ usual value, Nocedal and Wright, Numerical Optimization, 2006, section 3.1)."""
 
 # Memory.
 
+AT_ONCE = 3e-3
+"""Creep time, in times in which the edge crosses the reach of the surface forces, below which creep
+counts as instantaneous, at a tolerance of 1e-2: it changes forces by less than that."""
+
 SHORT = 1e-2
 """Step over retardation time below which moments are series, as differences would cancel: both are
 then exact to 1e-8 (tests/test_energy_kernel.py, ``test_memory_of_a_linear_load``)."""
@@ -83,6 +87,10 @@ TOO_SLOW = 10.0, 1e4
 it is; of the period in steady cycles, where the element gathers the mean of the load."""
 
 # The frame that rides on the contact edge.
+
+STEEP = 0.05
+"""Width over which a tip rises from one to two ranges of the attraction, in radii of the open
+contact, below which its edge stays there (paraboloids have 0.4, cones 0.9, punches 0)."""
 
 RIDE_FROM = 0.25
 """Radius of the edge, in radii of the open contact, beyond which a slack contact is solved together
@@ -117,7 +125,7 @@ SMALLEST_FRAME = 0.5
 TRACE_FROM = 0.2
 """Move of the edge in a step, in edge spacings, from which the memory rides with it."""
 
-SLACKER = 12.0
+SLACKER = 10.0
 """Tabor number of the softened sample from which on that pays: such a step costs 15 others."""
 
 FIRST_PANEL, NEXT_PANEL = 0.8, 2.2
