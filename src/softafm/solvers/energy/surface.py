@@ -98,8 +98,10 @@ class Surface:
         sharpness = contact.surface.sharpness if contact.adhesive else 1.0
         self.target = SPACING * at_least**0.2 / max(1.0, sharpness)
         self.growth = GROWTH * min(1.0, strictness**0.17)
-        # Where the tip rises steeply, at the rim of a punch, it holds the edge.
+        # Where the tip rises steeply, at the rim of a punch, it holds the edge; and a sample that is
+        # all memory parts evenly, without an edge.
         free = contact.open_width > STEEP * self.open_frame
+        free = free and find_softening(self.parameters, breaks[-1] - breaks[0]) < FAR_SOFTER
         tabor = contact.tabor_after(breaks[-1] - breaks[0]) if contact.adhesive else 0.0
         slack = free and tabor > SLACK
         self.ride_from = RIDE_FROM * self.open_frame if slack else inf
@@ -383,13 +385,18 @@ class Surface:
         return self.energy() + float(2 * np.pi * self.parameters.compliance[1:] @ elements)
 
 
+def find_softening(parameters: Parameters, duration: float) -> float:
+    """Return the compliance that a sample gains in a ``duration``, s, in instantaneous ones."""
+    elements, times = parameters.compliance[1:], parameters.retardation
+    return float(-elements @ np.expm1(-duration / times) / parameters.compliance[0])
+
+
 def choose_spacing_held(parameters: Parameters, duration: float) -> float:
     """Return the spacing under a receding edge, in that aimed at, up to which the frame stays.
 
     By how much softer the sample gets in a ``duration``, s: one that does not has no memory.
     """
-    elements, times = parameters.compliance[1:], parameters.retardation
-    softened = -elements @ np.expm1(-duration / times) / parameters.compliance[0]
+    softened = find_softening(parameters, duration)
     if softened < HARDLY_SOFTER:
         return 0.0
     return HELD if softened < FAR_SOFTER else HELD_IF_FAR_SOFTER
