@@ -17,7 +17,8 @@ from softafm.instrument.motion import is_steady
 from softafm.modes import MODES, Inputs, Mode, Settings
 from softafm.modes.check import plan_finer_run
 from softafm.modes.perform import simulate
-from softafm.modes.start import refuse_start_inside, refuse_unable, regularise_contact
+from softafm.modes.regularise import Regularise, is_beyond, regularise_contact
+from softafm.modes.start import refuse_start_inside, refuse_unable
 from softafm.solvers.solver import Solver
 
 if TYPE_CHECKING:
@@ -61,7 +62,7 @@ class Experiment:
     tolerance: float = 1e-2
     profiles: bool = False
     check: bool = False
-    regularise: float | None = None
+    regularise: Regularise = "auto"
     tables: Mapping[str, Any] = field(default_factory=dict)
     document: Mapping[str, Any] = field(default_factory=dict, repr=False, compare=False)
 
@@ -99,7 +100,7 @@ class Experiment:
         ConfigError
             As ``run``.
         """
-        if self.check:
+        if self.check or is_beyond(self.contact):
             return {str(name): found.values for name, found in self.run().variables.items()}
         with self._worded_as_written():
             contact = regularise_contact(self.contact, self.regularise)

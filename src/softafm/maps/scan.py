@@ -13,12 +13,13 @@ import numpy as np
 
 from softafm.checks.gathering import Placed, gather
 from softafm.checks.kinds import refuse_other
-from softafm.checks.validate import check_tabor, check_tolerance, check_whole
+from softafm.checks.validate import check_tolerance, check_whole
 from softafm.contact import Contact
 from softafm.errors import AccuracyWarning
 from softafm.maps import curve_pixels, tapped_lines
 from softafm.maps.imaging import AmplitudeModulation, ForceVolume
 from softafm.maps.sample_map import SampleMap
+from softafm.modes.regularise import Regularise, choose_tabor
 from softafm.modes.start import (
     choose_solver,
     refuse_start_inside,
@@ -50,7 +51,7 @@ def scan(
     *,
     solver: Solver | None = None,
     tolerance: float = 1e-2,
-    regularise: float | None = None,
+    regularise: Regularise = "auto",
     workers: int = 1,
     progress: bool | Progress | None = None,
 ) -> "Dataset":
@@ -98,9 +99,11 @@ def scan(
     tolerance, workers = check_tolerance(tolerance), check_whole("workers", workers, 1, 1024)
     solver = choose_solver(solver)
     contacts = sample.pixels.contacts
-    if regularise is not None:
-        tabor = check_tabor("regularise", regularise)
-        contacts = [_call_at_pixel(sample, i, c.regularised, tabor) for i, c in enumerate(contacts)]
+    lowered = [choose_tabor(contact, regularise) for contact in contacts]
+    contacts = [
+        contact if tabor is None else _call_at_pixel(sample, i, contact.regularised, tabor)
+        for i, (contact, tabor) in enumerate(zip(contacts, lowered, strict=True))
+    ]
     options = solver, tolerance, workers
     take: Callable[[Progress | None], _Taken]
     refuse: Callable[[Contact], None]
@@ -120,8 +123,9 @@ def scan(
         warnings.warn(warning, stacklevel=2)
     result = _assemble(sample, imaging, solver, tolerance, names, values, warned, done)
     result.attrs["failures"] = json.dumps(failures)
-    if regularise is not None:
-        result.attrs["regularised_tabor"] = float(regularise)
+    numbers = [tabor for tabor in lowered if tabor is not None]
+    if numbers:
+        result.attrs["regularised_tabor"] = numbers[0]
     return result
 
 
