@@ -309,6 +309,22 @@ class Counting:
         raise sa.DivergedError("nothing is solved here")
 
 
+def test_a_sample_that_softens_long_after_the_motion_is_not_soft():
+    """In the long run its Tabor number is 1e5; within the motion it is that of a solid, 0.2."""
+    sample = sa.StandardLinearSolid.from_relaxation_time(3e9, 10.0, 1e3, 0.35)
+    contact = sa.Contact(sa.Paraboloid(1e-8), sample, sa.LennardJones(1e-19, Z0))
+    assert contact.tabor_softened > 1e4
+    solver, slow = Counting(), sa.Triangle(4e-9, 0.3e-9, 1e-23)
+    for regularise in ("auto", None):
+        with pytest.raises(sa.DivergedError):
+            sa.force_distance(
+                contact, sa.Triangle(4e-9, 0.3e-9, 1e-6), regularise=regularise, solver=solver
+            )
+    with pytest.raises(sa.DivergedError):
+        sa.force_distance(contact, slow, solver=solver)
+    assert solver.given == [contact, contact, contact.regularised(500)]
+
+
 def test_none_forces_the_real_law_and_warns_beforehand():
     solver = Counting()
     with (

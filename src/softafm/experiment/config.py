@@ -100,13 +100,14 @@ class Experiment:
         ConfigError
             As ``run``.
         """
-        if self.check or is_beyond(self.contact):
+        if self.check or is_beyond(self.contact, MODES[self.mode], self.motion):
             return {str(name): found.values for name, found in self.run().variables.items()}
         with self._worded_as_written():
-            contact = regularise_contact(self.contact, self.regularise)
+            mode = MODES[self.mode]
+            contact = regularise_contact(self.contact, self.regularise, mode, self.motion)
             settings = Settings(self.solver, self.tolerance)
             inputs = self.inputs._replace(contact=contact)
-            found = simulate(MODES[self.mode], inputs, settings)
+            found = simulate(mode, inputs, settings)
         return {name: values for name, (_, values) in found.data.items()}
 
     @contextmanager
@@ -300,9 +301,9 @@ def build_experiment(
         raise ConfigError(problems)
     contact = Contact(tip=built["tip"], sample=built["sample"], surface=built["surface"])
     _refuse_flow(contact, mode, built["motion"], document["motion"])
-    _refuse_run(contact, solver, run, document)
+    _refuse_run(contact, solver, run, document, mode, built["motion"])
     if mode.simulate is None:
-        used = regularise_contact(contact, run.regularise)
+        used = regularise_contact(contact, run.regularise, mode, built["motion"])
         _refuse_motion(used, mode.find_path(built["motion"]), solver, document["motion"])
     return Experiment(
         mode=mode.name,
@@ -334,13 +335,18 @@ def _list_unusable(run: schema.Run, solver: Solver | None, mode: Mode | None) ->
 
 
 def _refuse_run(
-    contact: Contact, solver: Solver | None, run: schema.Run, document: Mapping[str, Any]
+    contact: Contact,
+    solver: Solver | None,
+    run: schema.Run,
+    document: Mapping[str, Any],
+    mode: Mode,
+    motion: Any,
 ) -> None:
     """Raise ConfigError if the run cannot be checked, or the contact not be regularised."""
     written = document.get("run", {})
     try:
         plan_finer_run(run.check, solver, run.tolerance)
-        regularise_contact(contact, run.regularise)
+        regularise_contact(contact, run.regularise, mode, motion)
     except ValueError as error:
         key = "check" if str(error).startswith("check") else "regularise"
         reason = str(error).removeprefix("check = True: ")

@@ -116,8 +116,8 @@ def estimate_seconds(experiment: "Experiment") -> float:
 
 def _make_case(experiment: "Experiment") -> tuple["Contact", Foreseen]:
     """Return what comes in touch, and how."""
-    contact = regularise_contact(experiment.contact, experiment.regularise)
     mode = MODES[experiment.mode]
+    contact = regularise_contact(experiment.contact, experiment.regularise, mode, experiment.motion)
     return contact, mode.expect(experiment.inputs._replace(contact=contact))
 
 
@@ -169,13 +169,14 @@ def _add_adhesion(found: list[Row], contact: "Contact") -> None:
 def _add_regularisation(found: list[Row], experiment: "Experiment", contact: "Contact") -> None:
     """Show what becomes of a soft contact, or that it stays as it is."""
     given, regularise = experiment.contact, experiment.regularise
-    if choose_tabor(given, regularise) is not None:
+    mode, motion = MODES[experiment.mode], experiment.motion
+    if choose_tabor(given, regularise, mode, motion) is not None:
         length = contact.surface.range
         words = describe_regularisation(given.tabor_softened, given.surface.range, length)
         words += describe_slowing(compute_edge_slowing(given, length))
         words += "; a second run estimates the error" if regularise == "auto" else ""
         found.append(Row("range", write_quantity(length, "m"), words))
-    elif is_beyond(given):
+    elif is_beyond(given, mode, motion):
         words = f"the law stays: beyond a Tabor number of {LARGEST_TABOR:g} the run may fail"
         found.append(Row("range", write_quantity(given.surface.range, "m"), words))
 

@@ -75,7 +75,7 @@ def perform(
     if MODES.get(mode.name) is not mode:
         raise ValueError(f"mode '{mode.name}' is not known: call softafm.modes.register with it")
     finer = plan_finer_run(check, solver, tolerance)
-    tabor, given = choose_tabor(contact, regularise), contact
+    tabor, given = choose_tabor(contact, regularise, mode, motion), contact
     contact = given if tabor is None else given.regularised(tabor)
     if mode.lever:
         refuse_other_than_cantilever(cantilever)
@@ -85,7 +85,7 @@ def perform(
             f"'{mode.name}' be 'stiffness' or 'resonator'"
         )
     inputs = Inputs(contact, motion, cantilever, tables)
-    doubts = doubt_softness(contact)
+    doubts = doubt_softness(contact, mode, motion)
     for doubt in doubts:
         warn_caller(doubt)
     found = simulate(mode, inputs, Settings(solver, tolerance, profiles, progress))

@@ -3,7 +3,7 @@
 import json
 from collections.abc import Callable
 from functools import partial
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
@@ -11,6 +11,8 @@ from softafm.checks.kinds import refuse_other
 from softafm.checks.validate import LARGEST_TABOR, check_tabor
 from softafm.contact import Contact
 from softafm.errors import AccuracyWarning, DivergedError
+from softafm.instrument.agreement import check_motion
+from softafm.instrument.motion import is_steady
 from softafm.modes.check import find_differences, record_warning, run_again
 from softafm.progress import Progress
 from softafm.results.datasets import compute_edge_slowing
@@ -32,13 +34,29 @@ _ROUNDING = 1 + 1e-6
 """What was regularised to the largest number is not beyond it."""
 
 
-def is_beyond(contact: Contact) -> bool:
-    """Return whether a contact is so soft that the solver may not succeed with its law."""
-    return contact.tabor_softened > LARGEST_TABOR * _ROUNDING
+def is_beyond(contact: Contact, mode: "Mode", motion: Any) -> bool:
+    """Return whether a contact gets so soft in a motion that the solver may not succeed.
+
+    A sample that would soften long after the end is not soft.
+    """
+    largest = LARGEST_TABOR * _ROUNDING
+    if contact.tabor_softened <= largest:
+        return False
+    if mode.simulate is not None:
+        return True
+    path = mode.path(motion)
+    check_motion(path)
+    if is_steady(path):
+        return True
+    duration = float(path.breaks[-1] - path.breaks[0])
+    stiffer = 1 / (contact.softened_modulus * float(contact.body.compliance.at(duration)))
+    return contact.tabor_softened * max(1.0, stiffer) ** (-2 / 3) > largest
 
 
-def choose_tabor(contact: Contact, regularise: Regularise) -> float | None:
-    """Return the Tabor number to which a contact is to be lowered; None if its law stays.
+def choose_tabor(
+    contact: Contact, regularise: Regularise, mode: "Mode", motion: Any
+) -> float | None:
+    """Return the Tabor number to which a contact is lowered in a mode; None if its law stays.
 
     ValueError if it is no contact, or the option is none such.
     """
@@ -52,7 +70,7 @@ def choose_tabor(contact: Contact, regularise: Regularise) -> float | None:
             f"regularise = {regularise!r}: must be a number from 0.1 to {LARGEST_TABOR:g}, 'auto' "
             "or None"
         )
-    if not is_beyond(contact):
+    if not is_beyond(contact, mode, motion):
         return None
     try:
         contact.regularised(COARSER)
@@ -61,15 +79,17 @@ def choose_tabor(contact: Contact, regularise: Regularise) -> float | None:
     return CHOSEN
 
 
-def regularise_contact(contact: Contact, regularise: Regularise) -> Contact:
+def regularise_contact(
+    contact: Contact, regularise: Regularise, mode: "Mode", motion: Any
+) -> Contact:
     """Return the contact that is computed with an option ``regularise``; ValueError as before."""
-    tabor = choose_tabor(contact, regularise)
+    tabor = choose_tabor(contact, regularise, mode, motion)
     return contact if tabor is None else contact.regularised(tabor)
 
 
-def doubt_softness(contact: Contact) -> tuple[AccuracyWarning, ...]:
+def doubt_softness(contact: Contact, mode: "Mode", motion: Any) -> tuple[AccuracyWarning, ...]:
     """Return what is to be warned of before a contact is computed, or nothing."""
-    if not is_beyond(contact):
+    if not is_beyond(contact, mode, motion):
         return ()
     tabor = contact.tabor_softened
     text = (
@@ -116,12 +136,19 @@ def estimate_error(
         errors = {name: difference.relative for name, difference in found.items()}
         worst = max(errors, key=lambda name: abs(errors[name]), default="")
         largest = abs(errors.get(worst, np.nan))
-        known = f"by a run at {COARSER:g} results are off by up to {100 * largest:.2g} % ({worst})"
+        known = f"by a run at {COARSER:g} it is off by up to {100 * largest:.2g} % ({worst})"
     result.attrs |= {"regularised_errors": json.dumps(errors), "regularised_error": largest}
-    slower = compute_edge_slowing(given, result.attrs["regularised_range"])
-    before, after = (
-        write_quantity(result.attrs[name], "m") for name in ("given_range", "regularised_range")
-    )
+    contact = given.regularised(CHOSEN)
+    record_warning(result, tell_choice(given, contact, largest, known))
+
+
+def tell_choice(given: Contact, contact: Contact, error: float, known: str) -> AccuracyWarning:
+    """Return the warning that a contact was regularised by itself, and what is known of the error.
+
+    ``error`` is the largest, over its scale, and ``known`` says it in words.
+    """
+    before, after = (write_quantity(each.surface.range, "m") for each in (given, contact))
+    slower = compute_edge_slowing(given, contact.surface.range)
     text = (
         f"regularised by itself: the Tabor number of {given.tabor_softened:.3g} is beyond "
         f"{LARGEST_TABOR:g}, and was lowered to {CHOSEN:g} by a range of {after} in place of "
@@ -129,4 +156,4 @@ def estimate_error(
     )
     if slower > 1:
         text += f"; the edge is {slower:.2g} times slower in cohesive lengths, which adds to that"
-    record_warning(result, AccuracyWarning(f"{text}; regularise=None keeps the law", largest))
+    return AccuracyWarning(f"{text}; regularise=None keeps the law", error)
