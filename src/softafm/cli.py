@@ -99,7 +99,8 @@ def run(
         bool, typer.Option("--check", help="Repeat the run finer and compare.")
     ] = False,
     regularise: Annotated[
-        str | None, typer.Option(help="Lower the Tabor number to this.", metavar="NUMBER")
+        str | None,
+        typer.Option(help="Lower the Tabor number to this, or auto, or none.", metavar="NUMBER"),
     ] = None,
     force: Force = False,
 ) -> None:

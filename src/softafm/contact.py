@@ -198,7 +198,7 @@ class Contact:
         Raises
         ------
         ValueError
-            If the number is not from 0.1 to 100, there is no adhesion, or the law has no longer
+            If the number is not from 0.1 to 1000, there is no adhesion, or the law has no longer
             range.
         """
         tabor = check_tabor("tabor", tabor)

@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 
+import numpy as np
 import xarray as xr
 from matplotlib.figure import Figure
 from numpy.typing import ArrayLike
@@ -62,8 +63,11 @@ def plot(
     runs = check_list("datasets", datasets, xr.Dataset, "a result of softafm, an xarray.Dataset")
     names = choose_labels("dataset", runs, labels, (f"run {i + 1}" for i in range(len(runs))))
     if isinstance(reference, xr.Dataset):
-        return _plot([*runs, reference], [*names, REFERENCE])
+        figure = _plot([*runs, reference], [*names, REFERENCE])
+        _tell_regularised(figure, [*runs, reference])
+        return figure
     figure = _plot(runs, names)
+    _tell_regularised(figure, runs)
     if reference is not None:
         mode = str(runs[0].attrs["mode"])
         draw_references(figure, mode, runs, list_references(reference))
@@ -83,6 +87,15 @@ def _plot(runs: list[xr.Dataset], names: list[str]) -> Figure:
     if "sweep_height" in runs[0].dims:
         return draw_approach_curve(runs, names)
     return draw_panels(runs, names, MODES[modes[0]].figure)
+
+
+def _tell_regularised(figure: Figure, runs: list[xr.Dataset]) -> None:
+    """Say below a figure that contacts were regularised by themselves, and how far it is off."""
+    errors = [run.attrs["regularised_error"] for run in runs if "regularised_error" in run.attrs]
+    if errors:
+        worst = np.max(errors)
+        off = "error not known" if np.isnan(worst) else f"estimated error {100 * worst:.2g} %"
+        figure.supxlabel(f"too soft for their law, and regularised: {off}", fontsize=8)
 
 
 def _draw_maps(runs: list[xr.Dataset], names: list[str]) -> Figure:

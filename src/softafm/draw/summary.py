@@ -45,6 +45,8 @@ def list_observables(dataset: "Dataset") -> Table:
             *(dataset.attrs[name] for name in ("given_tabor", "given_range", "regularised_range"))
         )
         words += describe_slowing(dataset.attrs["edge_slowed"])
+        if "regularised_error" in dataset.attrs:
+            words += f"; estimated error {_write_percent(dataset.attrs['regularised_error'])}"
         table.add_row("range", write_quantity(dataset.attrs["regularised_range"], "m"), words)
     return table
 

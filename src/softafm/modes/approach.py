@@ -33,6 +33,7 @@ from softafm.modes.lever_sweep import sweep_lever
 from softafm.modes.mode import Mode
 from softafm.modes.parts import Axes, Foreseen, Inputs, Outcome, Row, Settings
 from softafm.modes.perform import perform
+from softafm.modes.regularise import Regularise
 from softafm.modes.scales import Scales, tap_scales
 from softafm.modes.start import choose_solver, refuse_tapped_flow
 from softafm.modes.tap_map import OBSERVABLES, TapMap
@@ -62,7 +63,7 @@ def approach_curve(
     tolerance: float = 1e-2,
     progress: bool | Progress | None = None,
     check: bool = False,
-    regularise: float | None = None,
+    regularise: Regularise = "auto",
 ) -> "Dataset":
     """Heights of a tapping lever for given amplitudes, and what it records on approach and retract.
 

@@ -10,6 +10,7 @@ from softafm.instrument.motions import Sine
 from softafm.modes.mode import Mode
 from softafm.modes.parts import Layout
 from softafm.modes.perform import perform
+from softafm.modes.regularise import Regularise
 from softafm.modes.scales import tap_scales
 from softafm.progress import Progress
 from softafm.results.content import observables
@@ -32,7 +33,7 @@ def tapping_cycle(
     profiles: bool = False,
     progress: bool | Progress | None = None,
     check: bool = False,
-    regularise: float | None = None,
+    regularise: Regularise = "auto",
 ) -> "Dataset":
     """Cycles of h0 = mean_height + amplitude·cos(2πft) from the top, the surface flat at first.
 
