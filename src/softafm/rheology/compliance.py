@@ -54,7 +54,7 @@ class CreepCompliance(NamedTuple):
         )
 
     def without_faster(self, time: float) -> "CreepCompliance":
-        """Return the compliance with what creeps in less than a time, s, taken for instantaneous."""
+        """Return the compliance with all creep faster than a time, s, taken for instantaneous."""
         times = np.asarray(self.retardation_times, float)
         fast = times < time
         return CreepCompliance(

@@ -98,8 +98,8 @@ class Surface:
         sharpness = contact.surface.sharpness if contact.adhesive else 1.0
         self.target = SPACING * at_least**0.2 / max(1.0, sharpness)
         self.growth = GROWTH * min(1.0, strictness**0.17)
-        # Where the tip rises steeply, at the rim of a punch, it holds the edge; and a sample that is
-        # all memory parts evenly, without an edge.
+        # Where the tip rises steeply, at the rim of a punch, it holds the edge; and a sample that
+        # is all memory parts evenly, without an edge.
         free = contact.open_width > STEEP * self.open_frame
         free = free and find_softening(self.parameters, breaks[-1] - breaks[0]) < FAR_SOFTER
         tabor = contact.tabor_after(breaks[-1] - breaks[0]) if contact.adhesive else 0.0
