@@ -314,7 +314,7 @@ def test_a_sample_that_softens_long_after_the_motion_is_not_soft():
     sample = sa.StandardLinearSolid.from_relaxation_time(3e9, 10.0, 1e3, 0.35)
     contact = sa.Contact(sa.Paraboloid(1e-8), sample, sa.LennardJones(1e-19, Z0))
     assert contact.tabor_softened > 1e4
-    solver, slow = Counting(), sa.Triangle(4e-9, 0.3e-9, 1e-23)
+    solver, slow = Counting(), sa.Triangle(1e-7, 0.3e-9, 1e-23)
     for regularise in ("auto", None):
         with pytest.raises(sa.DivergedError):
             sa.force_distance(
