@@ -314,7 +314,7 @@ def test_a_sample_that_softens_long_after_the_motion_is_not_soft():
     sample = sa.StandardLinearSolid.from_relaxation_time(3e9, 10.0, 1e3, 0.35)
     contact = sa.Contact(sa.Paraboloid(1e-8), sample, sa.LennardJones(1e-19, Z0))
     assert contact.tabor_softened > 1e4
-    solver, slow = Counting(), sa.Triangle(4e-9, 0.3e-9, 1e-23)
+    solver, slow = Counting(), sa.Triangle(1e-6, 0.3e-9, 1e-21)
     for regularise in ("auto", None):
         with pytest.raises(sa.DivergedError):
             sa.force_distance(
@@ -344,6 +344,19 @@ def test_a_law_that_cannot_be_stretched_is_run_as_it_is_with_that_warning():
         ):
             sa.force_distance(contact, GEL_RAMP, solver=solver)
         assert solver.given == [contact]
+
+
+def test_a_tip_that_starts_within_the_longer_range_meets_the_law_as_it_is():
+    """At a Tabor number of 250 the surfaces would be at rest 10.4 nm apart."""
+    solver = Counting()
+    with (
+        pytest.warns(sa.AccuracyWarning, match="is taken as it is at a Tabor number of"),
+        pytest.raises(sa.DivergedError),
+    ):
+        sa.force_distance(GEL, sa.Triangle(10e-9, -1e-6, 1e-6), solver=solver)
+    with pytest.raises(sa.DivergedError):
+        sa.force_distance(GEL, sa.Triangle(11e-9, -1e-6, 1e-6), solver=solver)
+    assert solver.given == [GEL, GEL.regularised(500)]
 
 
 def test_what_was_regularised_to_the_largest_number_is_not_beyond_it():

@@ -14,6 +14,7 @@ from softafm.errors import AccuracyWarning, DivergedError
 from softafm.instrument.agreement import check_motion
 from softafm.instrument.motion import is_steady
 from softafm.modes.check import find_differences, record_warning, run_again
+from softafm.modes.start import refuse_start_inside
 from softafm.progress import Progress
 from softafm.results.datasets import compute_edge_slowing
 from softafm.units.quantities import write_quantity
@@ -73,8 +74,10 @@ def choose_tabor(
     if not is_beyond(contact, mode, motion):
         return None
     try:
-        contact.regularised(COARSER)
-    except ValueError:  # not every law can be stretched, nor to every length
+        longer = contact.regularised(COARSER)
+        if mode.simulate is None:
+            refuse_start_inside(longer, mode.path(motion))
+    except ValueError:  # not every law can be stretched, nor farther than the tip is away at first
         return None
     return CHOSEN
 
@@ -128,7 +131,7 @@ def estimate_error(
     again = partial(repeat, given.regularised(COARSER))
     try:
         other = run_again(again, progress, f"at a Tabor number of {COARSER:g}")
-    except (DivergedError, ValueError) as error:
+    except DivergedError as error:
         known = f"the run at {COARSER:g} that tells the error failed: {error}"
         largest = np.nan
     else:
