@@ -243,9 +243,11 @@ class Surface:
         if elements:
             gained = self.background.gained[2 : 2 + elements]
         else:
-            frame = max(float(clock["widest"]), self.open_frame)
-            self.archive = self._build_mesh(self.finest_used), frame
-            gained = self._carry(self.fields[MEMORY:], self.archive[0], frame / clock["frame"])
+            if self.archive[1] == 0:
+                widest = max(float(clock["widest"]), self.open_frame)
+                self.archive = self._build_mesh(self.finest_used), widest
+            stretch = self.archive[1] / clock["frame"]
+            gained = self._carry(self.fields[MEMORY:], self.archive[0], stretch)
         if clock["edge"] == 0:
             self.level = self.first_level
             mesh = self._build_mesh(self.level)
