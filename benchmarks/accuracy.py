@@ -1,239 +1,259 @@
-"""Is the tolerance the error? Random contacts and motions against runs at a tenth of the tolerance.
+"""Is the tolerance the error, and is the cost as foretold? Experiments as people make them.
 
-Tip radius 5 nm to 5 µm, E_inf 1 MPa to 10 GPa, E0/E_inf 1 to 50, W 5 to 100 mJ/m², z0 0.15 to
-0.5 nm, relaxed Tabor number up to 30; triangles, taps, and force curves with a lever of 0.05 to
-100 N/m; creep times that matter. Every seed is one contact and motion, always the same. With
---out, results are added to a file, one JSON object a line, and what stands there already is not
-run again: take a new file for a new version of softafm.
+Every seed is an experiment of ``contacts.py``. It is run at the tolerance, at a tenth of it, and
+where the two disagree finer still, in a process that is ended once a run takes too long. Each
+observable is measured against itself: forces relative to the larger of itself and 1 % of the
+largest force; energies to the larger of itself and 2 % of the largest force times the range of the
+law, of taps times 2 % of the amplitude. Solutions of approach curves may be off by 1 % + 0.1 nm in
+height and 2 % in dissipation at tolerance 1e-2, in proportion at others; none may be missing or
+invented.
 
-    python benchmarks/accuracy.py [--contacts N] [--first SEED] [--tolerances 0.01 ...]
-                                  [--out FILE [--plot]]
+Results are added to a file, one JSON object a line, and what stands there already is not run again:
+take a new file for a new version of softafm.
+
+    python benchmarks/accuracy.py --out FILE [--contacts N] [--first SEED] [--tolerances 0.01 ...]
+                                  [--limit SECONDS] [--worst N]
 """
 
 import argparse
 import json
+import multiprocessing
+import resource
+import signal
 import warnings
-from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
-from time import perf_counter
-from typing import NamedTuple
+from time import process_time
 
 import common
+import contacts
 import numpy as np
 
 import softafm as sa
+from softafm.experiment.regime import estimate_seconds
 
-TABOR_BOUND = 30
-
-
-class Drawn(NamedTuple):
-    """A random contact's relaxed Tabor number, a length for its energies and a run of tolerance."""
-
-    tabor: float
-    length: float
-    run: Callable
+FORCES = ("force_max", "force_min", "force_min_approach", "force_mean")
+ENERGIES = ("loop_energy", "virial", "dissipation", "viscous_loss")
+SOLUTIONS = ("mean_height", "dissipation", "force_max", "force_min")
+SLOW, FACTOR = 60.0, 3.0
+"""Time a run should not take, s of one core, and by what factor it may differ from the forecast."""
 
 
-def draw(seed: int) -> Drawn:
-    """Contact and motion of a seed."""
-    random = np.random.default_rng(seed)
+class Runner:
+    """Runs experiments in a process of its own, which the system ends when one takes too long."""
 
-    def between(low, high):
-        return float(np.exp(random.uniform(np.log(low), np.log(high))))
+    def __init__(self) -> None:
+        self.process: multiprocessing.process.BaseProcess | None = None
 
-    while True:
-        contact = sa.Contact(
-            sa.Paraboloid(between(5e-9, 5e-6)),
-            sa.Elastic(between(1e6, 1e10), random.uniform(0, 0.5)),
-            sa.LennardJones.from_work_of_adhesion(
-                between(5e-3, 0.1), random.uniform(0.15e-9, 0.5e-9)
-            ),
-        )
-        if contact.tabor_relaxed <= TABOR_BOUND:
-            break
-    radius, z0 = contact.tip.radius, contact.surface.z0
-    work, modulus = contact.surface.work_of_adhesion, contact.sample.reduced_modulus_relaxed
-    adhesive = (6 * np.pi * work * radius**2 / modulus) ** (1 / 3)
-    depth = random.uniform(0.2, 1.5) * (adhesive + np.sqrt(radius * z0)) ** 2 / radius + z0
-    ratio = between(1, 50)
-
-    def with_creep(creep_time):
-        E = contact.sample.E
-        solid = sa.StandardLinearSolid(ratio * E, E, creep_time, contact.sample.poisson)
-        return sa.Contact(contact.tip, solid, contact.surface)
-
-    mode = random.integers(3)
-    if mode == 0:
-        frequency = between(1e4, 1e6)
-        amplitude = random.uniform(2e-9, 50e-9) + depth
-        mean_height = amplitude - depth * random.uniform(-0.2, 1)
-        touching = 3 * depth / (2 * np.pi * frequency * amplitude)
-        tapped = with_creep(touching * between(0.01, 10))
-        tap = tapped, amplitude, mean_height, frequency
-        return Drawn(
-            contact.tabor_relaxed,
-            0.02 * amplitude,
-            lambda tolerance: sa.tapping_cycle(*tap, tolerance=tolerance),
-        )
-    speed = between(1e-8, 1e-3)
-    pressed = with_creep(depth / speed * between(0.01, 100))
-    start = max(4, 6 * contact.tabor_relaxed**0.43) * z0
-    if mode == 1:
-        triangle = sa.Triangle(start, -depth, speed)
-        return Drawn(
-            contact.tabor_relaxed,
-            z0,
-            lambda tolerance: sa.force_distance(pressed, triangle, tolerance=tolerance),
-        )
-    lever = sa.Cantilever(between(0.05, 100))
-    # The base of the lever goes farther by what bends it: adhesion above, indentation below.
-    bent = 6 * np.pi * work * radius / lever.stiffness
-    pushed = 4 / 3 * modulus * np.sqrt(radius) * depth**1.5 / lever.stiffness
-    ramp = sa.Triangle(start + bent, -depth - pushed, speed)
-    return Drawn(
-        contact.tabor_relaxed,
-        z0,
-        lambda tolerance: sa.force_spectroscopy(pressed, lever, ramp, tolerance=tolerance),
-    )
-
-
-def largest_error(result, finer, length: float) -> float:
-    """Of forces relative to the largest |force|, of energies to at least that times a length."""
-    force = max(abs(float(finer["force_max"])), abs(float(finer["force_min"])))
-    worst = 0.0
-    for name in ("force_max", "force_min", "force_min_approach"):
-        worst = max(worst, abs(float(result[name] - finer[name])) / force)
-    for name in ("loop_energy", "virial", "dissipation"):
-        if name in finer:
-            scale = max(abs(float(finer[name])), force * length)
-            worst = max(worst, abs(float(result[name] - finer[name])) / scale)
-    return worst
-
-
-def measure(seed: int, tolerance: float) -> dict:
-    """Time, error and fate of a seed at a tolerance; the error is None of a run that gave up."""
-    drawn = draw(seed)
-    found = {"seed": seed, "tolerance": tolerance, "tabor": drawn.tabor}
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", sa.AccuracyWarning)
-        started = perf_counter()
+    def run(self, seed: int, tolerance: float, limit: float) -> dict:
+        """Return what ``perform`` found, or how it ended."""
+        if self.process is None:
+            context = multiprocessing.get_context("spawn")
+            self.pipe, other = context.Pipe()
+            self.process = context.Process(target=serve, args=(other,), daemon=True)
+            self.process.start()
+            other.close()
+        self.pipe.send((seed, tolerance, limit))
         try:
-            result = drawn.run(tolerance)
-            seconds = perf_counter() - started
-            finer = drawn.run(max(tolerance / 10, 1e-5))
-        except sa.DivergedError as error:
-            return {**found, "mode": "", "error": None, "ending": str(error)}
+            return self.pipe.recv()
+        except EOFError:
+            self.process.join()
+            code, self.process = self.process.exitcode, None
+            if code == -signal.SIGXCPU:
+                return {"ending": f"ended after {limit:g} s", "seconds": limit}
+            return {"ending": f"the process ended with {code}", "seconds": 0.0}
+
+    def stop(self) -> None:
+        """End the process."""
+        if self.process is not None:
+            self.process.terminate()
+            self.process.join()
+
+
+def serve(pipe) -> None:
+    """Run what is asked for, one after the other, each for a limited time of the processor."""
+    resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
+    warnings.simplefilter("ignore")
+    contact = sa.Contact(sa.Paraboloid(1e-8), sa.Elastic(1e9, 0.3), sa.LennardJones(1e-19, 3e-10))
+    sa.force_distance(contact, sa.Triangle(4e-9, 0.0, 1e-6))  # to load what is compiled
+    while True:
+        seed, tolerance, limit = pipe.recv()
+        experiment = replace(contacts.draw(seed), tolerance=tolerance)
+        touching = experiment.contact
+        touching.surface.compiled_pressure, touching.tip.compiled_profile  # noqa: B018 (to compile)
+        resource.setrlimit(resource.RLIMIT_CPU, (int(process_time() + limit) + 1, -1))
+        found = perform(experiment)
+        resource.setrlimit(resource.RLIMIT_CPU, (-1, -1))
+        pipe.send(found)
+
+
+def perform(experiment) -> dict:
+    """Run an experiment; return its observables, seconds of the processor and warnings."""
+    started = process_time()
+    try:
+        result = experiment.run()
+    except (sa.DivergedError, ValueError, ArithmeticError) as error:
+        return {"ending": f"{type(error).__name__}: {error}", "seconds": process_time() - started}
+    names = SOLUTIONS if "branch" in result.dims else (*FORCES, *ENERGIES)
     return {
-        **found,
-        "mode": result.attrs["mode"],
-        "seconds": seconds,
-        "error": largest_error(result, finer, drawn.length),
-        "warned": bool(result.attrs["warnings"]),
         "ending": "completed",
+        "seconds": process_time() - started,
+        "warnings": str(result.attrs["warnings"]),
+        "values": {name: result[name].values.tolist() for name in names if name in result},
+        "jumps": result.sizes.get("jump", 0),
+        "steps": int(result.attrs.get("solver_attempted_steps", 0)),
     }
 
 
-def battery(seeds, tolerances, out: Path | None = None) -> list[dict]:
+def compare(experiment, found: dict, truth: dict) -> dict[str, float]:
+    """Return the error of every observable, as a part of what it is measured against."""
+    value = {name: np.asarray(found[name]) for name in found}
+    exact = {name: np.asarray(truth[name]) for name in truth}
+    force = np.fmax(np.abs(exact["force_max"]), np.abs(exact["force_min"]))
+    if experiment.mode == "approach-curve":
+        amplitude = experiment.motion.free_amplitude * np.array(experiment.motion.amplitude_ratio)
+        return compare_solutions(value, exact, 0.02 * force * 0.02 * amplitude)
+    contact = experiment.contact
+    if experiment.regularise is not None:
+        contact = contact.regularised(experiment.regularise)
+    length = contact.reach
+    if experiment.mode == "tapping-cycle":
+        length = 0.02 * experiment.motion.amplitude
+    least = dict.fromkeys(FORCES, 0.01 * force) | dict.fromkeys(ENERGIES, 0.02 * force * length)
+    return {
+        name: float(np.abs(value[name] - exact[name]) / max(np.abs(exact[name]), least[name]))
+        for name in value
+    }
+
+
+def compare_solutions(value: dict, exact: dict, least: np.ndarray) -> dict[str, float]:
+    """Return the errors of solutions, as parts of a hundred times what they may be off by."""
+    found, there = (np.isfinite(each["mean_height"]) for each in (value, exact))
+    if (found != there).any():
+        return {"solutions": np.inf}
+    if not found.any():
+        return {"solutions": 0.0}
+    height, energy = exact["mean_height"], exact["dissipation"]
+    off = 0.01 * np.abs(value["mean_height"] - height) / (0.01 * np.abs(height) + 1e-10)
+    lost = 0.5 * np.abs(value["dissipation"] - energy) / np.fmax(np.abs(energy), least)
+    return {"mean_height": float(np.nanmax(off)), "dissipation": float(np.nanmax(lost))}
+
+
+def measure(runner: Runner, seed: int, tolerance: float, limit: float) -> dict:
+    """Return the errors, cost and fate of a seed at a tolerance.
+
+    The ``error`` is the largest, None where there is no finer run to measure against. Where the
+    first of these disagrees, ``doubt`` is by how much it differs from the one that decides.
+    """
+    experiment = replace(contacts.draw(seed), tolerance=tolerance)
+    contact = experiment.contact
+    entry = {
+        "seed": seed, "tolerance": tolerance, "mode": experiment.mode, "tip": contact.tip.kind,
+        "law": contact.surface.kind, "sample": contact.sample.kind, "error": None,
+        "tabor": contact.tabor_softened, "regularised": experiment.regularise is not None,
+        "expected": estimate_seconds(experiment), **runner.run(seed, tolerance, limit),
+    }  # fmt: skip
+    if "values" not in entry:
+        return entry
+    truth = runner.run(seed, max(tolerance / 10, 1e-5), limit)
+    if "values" not in truth:
+        return {**entry, "no_truth": truth["ending"]}
+    errors = compare(experiment, entry["values"], truth["values"])
+    if not max(errors.values()) <= tolerance:
+        finer = runner.run(seed, max(tolerance / 30, 1e-5), limit)
+        if "values" in finer:
+            doubt = compare(experiment, truth["values"], finer["values"])
+            entry["doubt"] = max(doubt.values())
+            truth, errors = finer, compare(experiment, entry["values"], finer["values"])
+    worst = max(errors, key=errors.__getitem__)
+    return {
+        **entry, "truth": truth["values"], "truth_jumps": truth["jumps"], "errors": errors,
+        "worst": worst, "error": errors[worst],
+    }  # fmt: skip
+
+
+def battery(seeds, tolerances, limit: float, out: Path) -> list[dict]:
     """Measure what the file lacks, adding to it line by line; return all that was asked for."""
-    lines = out.read_text(encoding="utf-8").splitlines() if out and out.exists() else []
+    lines = out.read_text(encoding="utf-8").splitlines() if out.exists() else []
     found = {(entry["seed"], entry["tolerance"]): entry for entry in map(json.loads, lines)}
+    runner = Runner()
     for tolerance in tolerances:
         for seed in seeds:
-            if (seed, tolerance) in found:
-                continue
-            entry = found[seed, tolerance] = measure(seed, tolerance)
-            if out:
+            if (seed, tolerance) not in found:
+                entry = found[seed, tolerance] = measure(runner, seed, tolerance, limit)
                 with out.open("a", encoding="utf-8") as file:
                     print(json.dumps(entry), file=file)
-            tell(entry)
+    runner.stop()
     return [found[seed, tolerance] for tolerance in tolerances for seed in seeds]
 
 
-def tell(entry: dict) -> None:
-    """Print what stands out."""
-    error = entry["error"]
-    if error is None or error > entry["tolerance"]:
-        much = entry["ending"] if error is None else f"{100 * error:.3g} %"
-        warned = " (warned)" if entry.get("warned") else ""
-        print(
-            f"seed {entry['seed']} at {entry['tolerance']:g}: {much}{warned}, {entry['mode']}, "
-            f"Tabor {entry['tabor']:.3g}",
-            flush=True,
-        )
+def judge(entry: dict) -> dict[str, bool]:
+    """Return what can be said of a run."""
+    completed, error = entry["ending"] == "completed", entry["error"]
+    within = error is not None and error <= entry["tolerance"]
+    warned = bool(entry.get("warnings"))
+    slow = entry["seconds"] > SLOW
+    gaps = entry["mode"] == "approach-curve"  # where there is no solution
+    values = [] if gaps else list(entry.get("values", {}).values())
+    return {
+        "within": within,
+        "or warned": within or (completed and warned),
+        "gave up": not completed and not slow,
+        "over 60 s": slow,
+        "NaN": bool(np.isnan(values).any()),
+        "no truth": "no_truth" in entry,
+        "false alarm": within and warned,
+        "cost": 1 / FACTOR <= entry["expected"] / max(entry["seconds"], 1e-3) <= FACTOR,
+    }
 
 
-def report(entries: list[dict]) -> None:
-    """Print a line for each tolerance, and each mode within it."""
-    rows = []
+def report(entries: list[dict], worst: int) -> None:
+    """Print the shares of all and of every group, and a list of the worst runs."""
     for tolerance in sorted({entry["tolerance"] for entry in entries}, reverse=True):
-        every = [entry for entry in entries if entry["tolerance"] == tolerance]
-        modes = sorted({entry["mode"] for entry in every} - {""})
-        for mode in ("all", *modes):
-            some = [entry for entry in every if mode in ("all", entry["mode"])]
-            rows.append((f"{tolerance:g}", mode, *statistics(some, tolerance)))
-    titles = ("tolerance", "mode", "runs", "within", "or warned", "median", "99th percentile",
-              "largest", "warned", "gave up")  # fmt: skip
-    common.show("Errors of random contacts", dict.fromkeys(titles, "right"), rows)
+        some = [entry for entry in entries if entry["tolerance"] == tolerance]
+        rows = [("all", *shares(some))]
+        for key in ("mode", "sample", "law", "tip"):
+            for name in sorted({entry[key] for entry in some}):
+                rows.append((name, *shares([entry for entry in some if entry[key] == name])))
+        titles = ("", "runs", *judge(some[0]))
+        common.show(f"Tolerance {tolerance:g}", dict.fromkeys(titles, "right"), rows)
+        missed = [entry for entry in some if not judge(entry)["within"]]
+        missed.sort(key=lambda e: (not judge(e)["or warned"], e["error"] or np.inf), reverse=True)
+        for entry in missed[:worst]:
+            print(describe(entry))
 
 
-def statistics(entries: list[dict], tolerance: float) -> tuple:
-    """Shares and quantiles as text."""
-    done = [entry for entry in entries if entry["error"] is not None]
-    if not done:
-        return len(entries), "", "", "", "", "", 0, len(entries)
-    errors = np.array([entry["error"] for entry in done])
-    warned = np.array([entry["warned"] for entry in done])
-    quantiles = [f"{q:.1e}" for q in np.quantile(errors, [0.5, 0.99, 1.0])]
-    within, told = np.mean(errors <= tolerance), np.mean((errors <= tolerance) | warned)
-    gave_up = len(entries) - len(done)
-    return len(entries), f"{within:.1%}", f"{told:.1%}", *quantiles, warned.sum(), gave_up
+def shares(entries: list[dict]) -> tuple:
+    """Return how many runs there are, and the share of each judgement as text."""
+    judged = [judge(entry) for entry in entries]
+    return len(entries), *(f"{np.mean([j[name] for j in judged]):.1%}" for name in judged[0])
 
 
-def plot(entries: list[dict], path: Path) -> None:
-    """Draw the errors against the tolerance, one dot a run."""
-    from matplotlib.figure import Figure
-
-    from softafm.draw.results import COLOURS
-
-    figure = Figure(figsize=(6, 4.5), layout="constrained")
-    ax = figure.subplots()
-    modes = sorted({entry["mode"] for entry in entries} - {""})
-    for shift, (mode, colour) in enumerate(zip(modes, COLOURS, strict=False)):
-        some = [e for e in entries if e["mode"] == mode and e["error"] is not None]
-        side = 1.15 ** (shift - (len(modes) - 1) / 2)
-        for warned, marker in ((False, "o"), (True, "x")):
-            dots = [
-                (e["tolerance"] * side, max(e["error"], 1e-8))
-                for e in some
-                if e["warned"] == warned
-            ]
-            if dots:
-                label = f"{mode}, warned" if warned else mode
-                ax.plot(*zip(*dots, strict=True), marker, color=colour, markersize=4, label=label)
-    tolerances = sorted({entry["tolerance"] for entry in entries})
-    ends = np.array([tolerances[0] / 1.5, tolerances[-1] * 1.5])
-    ax.plot(ends, ends, "-", color="0.4", linewidth=1, label="error = tolerance")
-    ax.set(xscale="log", yscale="log", xlabel="tolerance", ylabel="largest error", ylim=(1e-8, 1))
-    ax.legend(frameon=False, fontsize=8, loc="lower right")
-    figure.savefig(path, dpi=120)
-    print(f"Figure: {path}")
+def describe(entry: dict) -> str:
+    """Return a line on a run."""
+    fate = entry["ending"]
+    if fate == "completed":
+        fate = f"not known ({entry.get('no_truth')})"
+    if entry["error"] is not None:
+        fate = f"{entry['error']:.2%} in {entry['worst']}"
+        fate += f", finer ones differ by {entry['doubt']:.2%}" if "doubt" in entry else ""
+    kinds = ", ".join(entry[key] for key in ("mode", "tip", "law", "sample"))
+    warned = "; warned" if entry.get("warnings") else ""
+    return f"seed {entry['seed']}: {fate}{warned}; {kinds}, Tabor {entry['tabor']:.2g}"
 
 
 def main(arguments=None):
-    parser = argparse.ArgumentParser(description="Errors of random contacts.")
-    parser.add_argument("--contacts", type=int, default=60)
+    parser = argparse.ArgumentParser(description="Errors and costs of experiments drawn at random.")
+    parser.add_argument("--contacts", type=int, default=600)
     parser.add_argument("--first", type=int, default=0, help="first seed")
     parser.add_argument("--tolerances", type=float, nargs="+", default=[1e-2])
-    parser.add_argument("--out", type=Path, help="file of results, added to")
-    parser.add_argument("--plot", action="store_true", help="draw a figure beside the file")
+    parser.add_argument("--limit", type=float, default=1.5 * SLOW, help="of a run, s of one core")
+    parser.add_argument("--worst", type=int, default=30, help="how many to list")
+    parser.add_argument("--out", type=Path, required=True, help="file of results, added to")
     given = parser.parse_args(arguments)
-    if given.plot and given.out is None:
-        parser.error("--plot draws beside the file of --out: give one")
     seeds = range(given.first, given.first + given.contacts)
-    entries = battery(seeds, given.tolerances, given.out)
-    report(entries)
-    if given.plot:
-        plot(entries, given.out.with_suffix(".png"))
+    entries = battery(seeds, given.tolerances, given.limit, given.out)
+    report(entries, given.worst)
     return entries
 
 

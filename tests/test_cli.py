@@ -104,24 +104,20 @@ def test_a_check_that_finds_something_warns(folder, softafm, wide):
     assert "from a run with twice the steps and nodes" in out
 
 
-def test_a_soft_contact_is_advised_on_regularised_and_shown(folder, softafm, wide):
+def test_a_regularised_contact_is_shown(folder, softafm, wide):
     softafm("example", "pdms-sphere")
     short = ("pdms-sphere.toml", "--set", "surface.z0=0.3nm")
-    _, out, _ = softafm("info", *short)
-    assert re.search(r"regularise +8 +would enlarge the range from 300 pm to 15\.\d+ nm", out)
+    assert "regularise" not in softafm("info", *short)[1]
     _, out, _ = softafm("info", *short, "--set", "run.regularise=8", "--set", "run.check=true")
     assert re.search(r"range +15\.\d+ nm +of the law, regularised; it was 300 pm", out)
     assert re.search(r"Tabor number, slow +8 ", out)
     assert "with a check" in out
-    assert "regularise" not in softafm("info", "pdms-sphere.toml")[1]
     code, out, err = softafm("run", *short, "--regularise", "8")
     assert (code, err) == (0, "")
     assert re.search(r"range +15\.\d+ nm +of the law, regularised; it was 300 pm", out)
     slow = ("ldpe-tapping.toml", "--set", "sample.E0=20MPa", "--set", "sample.E_inf=1MPa")
-    assert "crosses its cohesive length 81 times more slowly" in softafm("info", *slow)[1]
-    law = "surface={law='dlvo', hamaker='1e-19J', z0='0.25nm', surface_potential='0mV', "
-    law += "debye_length='1nm'}"
-    assert "is not possible with this law" in softafm("info", *slow, "--set", law)[1]
+    slowed = softafm("info", *slow, "--set", "run.regularise=8")[1]
+    assert "crosses its cohesive length 81 times more slowly" in slowed
     _, out, _ = softafm("info", "ldpe-tapping.toml", "--set", "run.regularise=50")
     assert re.search(r"range +250 pm +of the law; a Tabor number of \S+ needs no other", out)
 
@@ -241,6 +237,21 @@ def test_info_shows_the_regime_without_running(folder, softafm):
     assert "JKR" in out
     assert "expected cost" in out
     assert names(folder) == before
+
+
+def test_run_shows_its_audit_and_info_that_a_run_would_end_in_contact(folder, softafm):
+    softafm("example", "ldpe-spectroscopy")
+    soft = ("--set", "cantilever.stiffness=0.05 N/m")
+    code, out, _ = softafm("info", "ldpe-spectroscopy.toml", *soft)
+    assert code == 0
+    assert re.search(r"end of the motion +20 nm +the tip parts at about \d\d nm: start there", out)
+    code, out, err = softafm("run", "ldpe-spectroscopy.toml", *soft, "--out", "stuck.nc")
+    assert code == 0
+    assert re.search(r"audit +failed +signs, bounds and the end; energy balanced to", out)
+    assert "still in contact at the end" in err
+    code, out, err = softafm("run", "ldpe-spectroscopy.toml", "--out", "parted.nc")
+    assert (code, err) == (0, "")
+    assert re.search(r"audit +passed", out)
 
 
 @pytest.mark.parametrize(

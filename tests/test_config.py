@@ -142,7 +142,7 @@ def refusal(load, document, *overrides):
 
 
 def test_check_and_regularise_are_read_and_passed_on(load):
-    assert (load(CURVE).check, load(CURVE).regularise) == (False, None)
+    assert (load(CURVE).check, load(CURVE).regularise) == (False, "auto")
     near = ("motion.start=4nm", "motion.turn=0nm", "run.tolerance=0.1")
     for document in (CURVE, SPECTROSCOPY):
         experiment = load(document, *near, "run.check=true", "run.regularise=2")
@@ -157,8 +157,8 @@ def test_check_and_regularise_are_read_and_passed_on(load):
     ("overrides", "line"),
     [
         (["run.check=1"], "run.check = 1: must be true or false"),
-        (["run.regularise=0"], "run.regularise = 0: must be between 0.1 and 100"),
-        (["run.regularise=1000"], "run.regularise = 1000: must be between 0.1 and 100"),
+        (["run.regularise=0"], "run.regularise = 0: must be between 0.1 and 1000"),
+        (["run.regularise=1001"], "run.regularise = 1001: must be between 0.1 and 1000"),
         (["run.regularise='8'"], "run.regularise = '8': must be a plain number, without quotes"),
         (["run.regularise=true"], "run.regularise = True: must be a plain number"),
         (

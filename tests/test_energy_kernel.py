@@ -31,6 +31,7 @@ from softafm.solvers.energy.layout import (
 from softafm.solvers.energy.memory import find_memory_weights
 from softafm.solvers.energy.proposal import find_extrapolation_weights
 from softafm.solvers.energy.step import advance
+from softafm.solvers.energy.tracing import follow_load
 
 R, W, Z0 = 10e-9, 0.05, 0.3e-9
 LAW = sa.LennardJones.from_work_of_adhesion(W, Z0)
@@ -449,6 +450,48 @@ def test_extrapolation_continues_parabolas(step, last, before):
             assert weights @ times**power == pytest.approx(step**power, rel=1e-9, abs=1e-9)
 
 
+# Memory that rides with the edge
+
+
+@pytest.mark.parametrize("to", [1.02, 1.3, 0.97, 0.8])
+@pytest.mark.parametrize("step", [1e-3, 0.3, 8.0])
+def test_a_load_that_rides_is_filtered_along_its_path(to, step):
+    """At fixed ξ the load is f(ξ)(1 + b s) at every instant s of the step; a(s) is straight."""
+    mesh = mesh_with_stiffness(unit_mesh(1e-3, 0.2, 8.0))
+    tau, grows, start = np.array([1.0, 0.02]), 0.4, 1e-7
+    compliance = np.array([1.0, 3.0, 0.5])
+
+    def sharp(xi):
+        return 1 / np.hypot(1, np.abs(xi) ** 3) + 0.3 * np.arctan((1 - xi**2) / 0.02)
+
+    def relaxed(xi):
+        return 1 / (1 + xi**2)
+
+    n = mesh.nodes.size
+    fields = np.zeros((MEMORY + 2, n))
+    fields[LOAD], fields[MEMORY:] = sharp(mesh.nodes), relaxed(mesh.nodes)
+    clock = new_clock()
+    clock["frame"], clock["rides"], clock["history"], clock["taken"] = start, 1, 1, step
+    known, gained, gain = np.empty((2, n)), np.empty((2, n)), np.empty((n, n))
+    displaced, new = np.empty(n), (1 + grows) * sharp(mesh.nodes)
+    follow_load(
+        step, to * start, clock, compliance, tau, mesh, fields, np.zeros((2, 5)), 1, new, gain,
+        known, gained, displaced, np.empty(6),
+    )  # fmt: skip
+    assert np.allclose(gain @ new, compliance[1:] @ gained, atol=1e-12)
+    assert np.allclose(displaced, compliance[1:] @ (known + gained), atol=1e-12)
+    for i in np.flatnonzero(mesh.nodes < 3)[::7]:
+        radius = to * mesh.nodes[i]
+        for m, k in enumerate(step / tau):
+            points = np.clip((radius - 1) / (to - 1) + np.array([-0.02, 0, 0.02]), 0, 1)
+            wanted = np.exp(-k) * relaxed(radius) + quad(
+                lambda s, k=k, r=radius: k * np.exp(-k * (1 - s)) * (1 + grows * s)
+                * sharp(r / (1 + s * (to - 1))),
+                max(0.0, 1 - 40 / k), 1, points=points[points > max(0.0, 1 - 40 / k)], limit=400,
+            )[0]  # fmt: skip
+            assert known[m, i] + gained[m, i] == pytest.approx(wanted, abs=2e-4)
+
+
 # Whole steps
 
 
@@ -465,11 +508,15 @@ def test_steps_equal_those_of_a_plain_newton_method():
     controls = Controls(
         end=1.0, shortest_step=step / 10, longest_step=step, top_speed=1e-300, open_frame=FRAME,
         edge_gap=LAW.gap_of_largest_tension, open_gap=1.0, prediction=1e3, memory=1e3, force=1e3,
-        newton=1e-11, slack=2.0, finest=0.0, coarsest=np.inf, most_tries=1e6, trigger=np.inf,
+        newton=1e-11, slack=2.0, held=0.0, finest=0.0, coarsest=np.inf, most_tries=1e6,
+        trigger=np.inf, ride_from=np.inf, trace_from=np.inf,
     )  # fmt: skip
     n, modes = MESH.nodes.size, retardation.size
     past = 0.2 / np.array([[3e-9], [1e-9]]) * np.array([[Z0], [-Z0]]) / (1 + MESH.nodes**2)
-    background = Background(past, FRAME, MESH.nodes[-1], MESH.edge_spacing, MESH.growth, 0.0, -1e-7)
+    gained = np.zeros((modes + 10, n))
+    background = Background(
+        past, FRAME, MESH.nodes[-1], MESH.edge_spacing, MESH.growth, 0.0, -1e-7, MESH.nodes, gained
+    )
     fields, clock = np.zeros((MEMORY + modes, n)), new_clock()
     clock["step"], clock["history"] = step, 1
     clock["frame"] = clock["frame_earlier"] = clock["frame_earliest"] = FRAME
@@ -477,7 +524,8 @@ def test_steps_equal_those_of_a_plain_newton_method():
     records, shapes = np.zeros(count, RECORD_FIELDS), np.zeros((count, n))
     outcome, taken = advance(
         height, profile, PRESSURE, hold, remember_nothing, parameters, background, MESH, UNIFORM,
-        controls, fields, clock, np.empty(0), records, shapes, new_room(n, MESH.far.size, modes),
+        controls, fields, clock, np.empty(0), np.zeros(modes), records, shapes,
+        new_room(n, MESH.far.size, modes), np.empty(n + 2, np.int64),
     )  # fmt: skip
     assert outcome == FULL
     assert taken == count
@@ -532,6 +580,7 @@ def test_steps_equal_those_of_a_plain_newton_method():
     assert np.abs(fields[LOAD] - K @ p).max() < 1e-9 * np.abs(K @ p).max()
     for m in range(modes):
         assert np.abs(fields[MEMORY + m] - K @ w[m]).max() < 1e-9 * np.abs(K @ w[m]).max()
+        assert np.abs(gained[2 + m] - fields[MEMORY + m]).max() < 1e-9 * np.abs(K @ w[m]).max()
 
 
 def test_steps_stop_exactly_at_the_end():

@@ -70,6 +70,8 @@ def test_epoxy_goes_from_its_glass_to_its_rubber():
 
 
 @pytest.mark.parametrize("sample", EVERY, ids=list(samples.NAMED))
+# The ramp ends in contact, on purpose.
+@pytest.mark.filterwarnings("ignore:audit. the tip is still in contact:softafm.AccuracyWarning")
 def test_named_samples_run(sample):
     surface = sa.LennardJones.from_work_of_adhesion(0.05, 1e-9)
     contact = sa.Contact(sa.Paraboloid(20e-9), sample, surface)

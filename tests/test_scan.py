@@ -195,6 +195,35 @@ def test_regularised_pixels_are_regularised_contacts():
     assert image.attrs["regularised_tabor"] == 3
 
 
+def test_pixels_too_soft_for_their_law_are_regularised_and_their_error_told():
+    law = sa.LennardJones.from_work_of_adhesion(0.05, 0.3e-9)
+    gel = sa.Contact(sa.Paraboloid(5e-6), sa.Elastic(2e4, 0.5), law)
+    stiffer = np.array([[2e4, 2e6]])
+    sample = sa.SampleMap(gel, 1e-6, fields={"sample.E": stiffer})
+    motion = sa.Triangle(6e-6, -1e-6, 1e-6)
+    with pytest.warns(
+        sa.AccuracyWarning, match=r"^1 of 2 .* pixel \(0, 0\): regularised by itself"
+    ):
+        image = sa.scan(sample, sa.ForceVolume(motion))
+    with pytest.warns(sa.AccuracyWarning, match=r"^regularised by itself") as told:
+        alone = sa.force_distance(gel, motion)
+    stiff = sa.force_distance(replace(gel, sample=sa.Elastic(2e6, 0.5)), motion)
+    found = [float(each["force_min"]) for each in (alone, stiff)]
+    assert image["force_min"].values[0].tolist() == found
+    assert image.attrs["regularised_tabor"] == 500
+    assert image.attrs["warnings"].endswith(str(told[0].message))
+
+
+def test_a_map_of_real_laws_says_that_they_are_too_short():
+    law = sa.LennardJones.from_work_of_adhesion(0.05, 0.3e-9)
+    gel = sa.Contact(sa.Paraboloid(5e-6), sa.Elastic(2e5, 0.5), law)
+    sample = sa.SampleMap(gel, 1e-6, height=np.zeros((1, 1)))
+    motion = sa.Triangle(3e-6, 2.5e-6, 1e-6)  # never near
+    with pytest.warns(sa.AccuracyWarning, match="is taken as it is at a Tabor number of 1.87e"):
+        image = sa.scan(sample, sa.ForceVolume(motion), regularise=None)
+    assert "regularised_tabor" not in image.attrs
+
+
 # What is where
 
 

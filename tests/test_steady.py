@@ -208,6 +208,30 @@ def test_any_chain_settles():
     assert float(result["dissipation"]) == pytest.approx(float(result["viscous_loss"]), rel=0.01)
 
 
+# Taps of samples that take many cycles to come to rest, with sharp rims in their memory.
+
+SOFT_TAPS = {  # sample, z0 in m, and the largest force at 1e-4, N
+    "creep of 0.28 periods": (sa.StandardLinearSolid(2e9, 0.1e9, 1e-6, 0.49), 0.25e-9, 48.066e-9),
+    "creep of a period": (sa.StandardLinearSolid(2e9, 0.1e9, 3.6e-6, 0.49), 0.25e-9, 83.230e-9),
+    "creep of 100 periods": (sa.StandardLinearSolid(2e9, 0.1e9, 3.6e-4, 0.49), 0.25e-9, 92.062e-9),
+    "ten times softer": (sa.StandardLinearSolid(2e8, 1e7, 1e-6, 0.49), 0.3e-9, 4.8397e-9),
+}
+
+
+@pytest.mark.parametrize("name", SOFT_TAPS)
+@pytest.mark.parametrize("tolerance", [1e-2, 1e-3])
+def test_taps_of_soft_samples_become_steady(name, tolerance):
+    """The memory is read from a mesh that does not ride, so that cycles repeat."""
+    sample, z0, largest = SOFT_TAPS[name]
+    contact = sa.Contact(sa.Paraboloid(10e-9), sample, sa.LennardJones(1e-19, z0))
+    tap = {"amplitude": 49.6e-9, "mean_height": 42.82e-9, "frequency": 278e3}
+    result = sa.tapping_cycle(contact, **tap, tolerance=tolerance)  # warnings are errors
+    assert int(result["cycles_run"]) < 10
+    assert float(result["force_max"]) == pytest.approx(largest, rel=5e-4)
+    released = float(result["viscous_loss"]) + float(result["jump_energy"].sum())
+    assert float(result["dissipation"]) == pytest.approx(released, rel=3e-3)
+
+
 # Energy
 
 
@@ -340,6 +364,20 @@ def test_cycles_that_scatter_are_not_steady_by_chance(misses, scatter):
     from softafm.solvers.energy.run import _scatter
 
     assert _scatter(misses) == pytest.approx(scatter)
+
+
+def test_an_elastic_tap_that_never_comes_off_is_steady_only_once_it_is_caught():
+    """Its first cycle falls into contact; the ones after it neither jump nor lose anything."""
+    soft = sa.Contact(
+        sa.Paraboloid(1e-6),
+        sa.Elastic(2e6, 0.5),
+        sa.LennardJones.from_work_of_adhesion(0.05, 0.3e-9).stretched(100),
+    )
+    tap = sa.tapping_cycle(soft, 35e-9, 91.57e-9, 5e4)
+    assert tap.cycles_run == 2
+    assert tap.contact_radius.values.min() > 0
+    assert tap.jump_time.size == 0
+    assert float(tap.dissipation) == 0
 
 
 def test_cycles_that_find_no_steady_state_are_warned_of(monkeypatch):

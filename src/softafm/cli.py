@@ -99,7 +99,8 @@ def run(
         bool, typer.Option("--check", help="Repeat the run finer and compare.")
     ] = False,
     regularise: Annotated[
-        str | None, typer.Option(help="Lower the Tabor number to this.", metavar="NUMBER")
+        str | None,
+        typer.Option(help="Lower the Tabor number to this, or auto, or none.", metavar="NUMBER"),
     ] = None,
     force: Force = False,
 ) -> None:
@@ -221,12 +222,24 @@ def plot(
     profiles: Annotated[
         bool, typer.Option("--profiles", help="Tip and surface at twelve instants instead.")
     ] = False,
+    reference: Annotated[
+        list[str] | None,
+        typer.Option(
+            help="Known answer to draw beside: hertz, dmt, jkr, maugis, lee-radok or ting; repeat "
+            "it for several.",
+            metavar="NAME",
+        ),
+    ] = None,
     force: Force = False,
 ) -> None:
     """Draw one result, or several of the same mode in one figure."""
     with _report_bad_input():
         if profiles and len(results) > 1:
             raise ValueError(f"{len(results)} results with --profiles: must be one")
+        if profiles and reference:
+            raise ValueError(
+                "--reference with --profiles: must be one of the two, as profiles show no forces"
+            )
         kind = "-profiles" if profiles else ""
         out = _choose_output(out, f"{results[0].stem}{kind}.png", _PICTURES, force)
 
@@ -237,7 +250,8 @@ def plot(
         if profiles:
             figure = plot_profiles(datasets[0])
         else:
-            figure = draw(datasets, labels=[path.stem for path in results])
+            names = [path.stem for path in results]
+            figure = draw(datasets, labels=names, reference=[*reference] if reference else None)
     _save_figure(figure, out, force)
 
 

@@ -21,6 +21,8 @@ from softafm.tips import Tip
 from softafm.tips.check import check_tip
 
 _ZOOMS, _POINTS = 9, 33
+_ROUGH = 0.1
+"""Largest error of a least depth on radii 15 % apart, relative: ten times that of a paraboloid."""
 _SOFT = 1e-4
 """Share of the modulus to which the repulsion of a law without attraction falls at the edge."""
 _MOST_STRETCHES, _SAME = 60, 1e-9
@@ -178,6 +180,14 @@ class Contact:
         """Tabor number with the softened modulus: the relaxed one, or of a sample that flows."""
         return self._tabor(self.softened_modulus)
 
+    def tabor_after(self, duration: float) -> float:
+        """Tabor number with the reduced modulus that creep leaves of the sample in a time, s.
+
+        Of a sample that flows no less than its modulus when flow sets in.
+        """
+        left = 1 / float(self.body.compliance.at(duration))
+        return self._tabor(max(left, self.softened_modulus))
+
     def regularised(self, tabor: float) -> "Contact":
         """Return the contact with a law of longer range, at the same work of adhesion.
 
@@ -188,7 +198,7 @@ class Contact:
         Raises
         ------
         ValueError
-            If the number is not from 0.1 to 100, there is no adhesion, or the law has no longer
+            If the number is not from 0.1 to 1000, there is no adhesion, or the law has no longer
             range.
         """
         tabor = check_tabor("tabor", tabor)
@@ -268,13 +278,27 @@ class Contact:
         The stable branch of JKR (Johnson, Kendall and Roberts 1971), by the ``depth`` of the body;
         zero where no contact exists. A sample that flows counts with its softened modulus.
         """
+        return self._find_contact_radius(tip_height, self.softened_modulus)
+
+    def contact_radius_instantaneous(self, tip_height: float) -> float:
+        """Radius of the contact at a tip height (m) before the sample has crept, m.
+
+        As ``contact_radius``, with the short-term modulus: the smaller of the two.
+        """
+        if self.contact_radius(tip_height) == 0:
+            return 0.0  # a stiffer sample reaches no farther for the tip
+        return self._find_contact_radius(tip_height, self._modulus_instantaneous)
+
+    def _find_contact_radius(self, tip_height: float, modulus: float) -> float:
         depth = -tip_height
-        low, shallowest = self._last_contact
+        if depth < self._bound_depth(modulus):
+            return 0.0
+        low, shallowest = self._last_contact(modulus)
         if depth < shallowest:
             return 0.0
         high = 2 * low
         for _ in range(_MOST_DOUBLINGS):
-            if not self._relaxed_depth(np.array([high]))[0] < depth:
+            if not self._depth(np.array([high]), modulus)[0] < depth:
                 break
             low, high = high, 2 * high
         else:
@@ -284,23 +308,44 @@ class Contact:
             )
         for _ in range(_ZOOMS):
             radius = np.linspace(low, high, _POINTS)
-            above = np.flatnonzero(self._relaxed_depth(radius) >= depth)[:1]
+            above = np.flatnonzero(self._depth(radius, modulus) >= depth)[:1]
             last = above[0] if above.size else _POINTS - 1
             low, high = radius[max(last - 1, 0)], radius[last]
         return float(high)
 
     @cached_property
-    def _last_contact(self) -> tuple[float, float]:
-        """Radius of the smallest stable relaxed contact, and the depth of the tip there, m."""
-        radius = self.tip.radius_at(self.reach) * np.geomspace(1e-6, 1e6, 6 * _POINTS)
-        for _ in range(_ZOOMS // 2 + 1):  # a least depth has twice the digits of its radius
-            depth = self._relaxed_depth(radius)
-            least = np.clip(depth.argmin(), 1, radius.size - 2)
-            radius = np.linspace(radius[least - 1], radius[least + 1], _POINTS)
-        depth = self._relaxed_depth(radius)
-        return float(radius[depth.argmin()]), float(depth.min())
+    def _rough_radii(self) -> np.ndarray:
+        return self.tip.radius_at(self.reach) * np.geomspace(1e-6, 1e6, 6 * _POINTS)
 
-    def _relaxed_depth(self, radius: np.ndarray) -> np.ndarray:
-        """Depth of the tip, m, in relaxed contacts of some radii, m, shape (n,)."""
+    @cached_property
+    def _depth_bounds(self) -> dict[float, float]:
+        return {}
+
+    def _bound_depth(self, modulus: float) -> float:
+        """Depth of the tip, m, below which there is no contact at a modulus; found quickly."""
+        if modulus not in self._depth_bounds:
+            least = float(self._depth(self._rough_radii, modulus).min())
+            self._depth_bounds[modulus] = least - _ROUGH * abs(least)
+        return self._depth_bounds[modulus]
+
+    @cached_property
+    def _last_contacts(self) -> dict[float, tuple[float, float]]:
+        return {}
+
+    def _last_contact(self, modulus: float) -> tuple[float, float]:
+        """Radius of the smallest stable contact at a modulus, and the depth of the tip there, m."""
+        if modulus not in self._last_contacts:
+            radius = self._rough_radii
+            for _ in range(_ZOOMS // 2 + 1):  # a least depth has twice the digits of its radius
+                depth = self._depth(radius, modulus)
+                least = np.clip(depth.argmin(), 1, radius.size - 2)
+                radius = np.linspace(radius[least - 1], radius[least + 1], _POINTS)
+            depth = self._depth(radius, modulus)
+            last = float(radius[depth.argmin()]), float(depth.min())
+            self._last_contacts[modulus] = last
+        return self._last_contacts[modulus]
+
+    def _depth(self, radius: np.ndarray, modulus: float) -> np.ndarray:
+        """Depth of the tip, m, in contacts of some radii, m, shape (n,), at a modulus, Pa."""
         work = self.surface.work_of_adhesion if self.adhesive else 0.0
-        return self.body.depth(self.tip, radius, self.softened_modulus, work)
+        return self.body.depth(self.tip, radius, modulus, work)

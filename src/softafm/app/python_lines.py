@@ -15,7 +15,7 @@ from softafm.samples import NAMED
 
 _WIDTH = 88
 _STEP = " " * 4
-_OPTIONS = {"tolerance": 1e-2, "profiles": False, "check": False, "regularise": None}
+_OPTIONS = {"tolerance": 1e-2, "profiles": False, "check": False, "regularise": "auto"}
 """What modes take besides a solver, at its default."""
 
 

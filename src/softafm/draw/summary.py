@@ -32,6 +32,8 @@ def list_observables(dataset: "Dataset") -> Table:
         table.add_row("jumps", str(dataset["jump_time"].size), "elastic instabilities crossed")
     if "branch" in dataset.dims:
         _add_branches(table, dataset)
+    if "audit" in dataset.attrs:
+        _add_audit(table, json.loads(dataset.attrs["audit"]))
     if "check_largest" in dataset.attrs:
         _add_check(table, dataset.attrs, differences)
     if "dma_misfit_largest" in dataset.attrs:
@@ -43,8 +45,22 @@ def list_observables(dataset: "Dataset") -> Table:
             *(dataset.attrs[name] for name in ("given_tabor", "given_range", "regularised_range"))
         )
         words += describe_slowing(dataset.attrs["edge_slowed"])
+        if "regularised_error" in dataset.attrs:
+            words += f"; estimated error {_write_percent(dataset.attrs['regularised_error'])}"
         table.add_row("range", write_quantity(dataset.attrs["regularised_range"], "m"), words)
     return table
+
+
+def _add_audit(table: Table, found: dict[str, Any]) -> None:
+    """Add whether a run, or all of many, passed its audit, and how well energy is balanced."""
+    passed = "passed" if found["passed"] else "failed"
+    if not found["passed"] and "runs" in found:
+        passed = f"{found['failed_runs']} of {found['runs']} failed"
+    imbalance = found["imbalance"]
+    words = "signs, bounds and the end"
+    if imbalance is not None:
+        words += f"; energy balanced to {_write_percent(imbalance)}"
+    table.add_row("audit", passed, words)
 
 
 def _add_check(table: Table, attributes: dict[str, Any], differences: dict[str, float]) -> None:

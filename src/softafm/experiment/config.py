@@ -17,7 +17,8 @@ from softafm.instrument.motion import is_steady
 from softafm.modes import MODES, Inputs, Mode, Settings
 from softafm.modes.check import plan_finer_run
 from softafm.modes.perform import simulate
-from softafm.modes.start import refuse_start_inside, refuse_unable, regularise_contact
+from softafm.modes.regularise import Regularise, is_beyond, regularise_contact
+from softafm.modes.start import refuse_start_inside, refuse_unable
 from softafm.solvers.solver import Solver
 
 if TYPE_CHECKING:
@@ -61,7 +62,7 @@ class Experiment:
     tolerance: float = 1e-2
     profiles: bool = False
     check: bool = False
-    regularise: float | None = None
+    regularise: Regularise = "auto"
     tables: Mapping[str, Any] = field(default_factory=dict)
     document: Mapping[str, Any] = field(default_factory=dict, repr=False, compare=False)
 
@@ -99,13 +100,14 @@ class Experiment:
         ConfigError
             As ``run``.
         """
-        if self.check:
+        if self.check or is_beyond(self.contact, MODES[self.mode], self.motion):
             return {str(name): found.values for name, found in self.run().variables.items()}
         with self._worded_as_written():
-            contact = regularise_contact(self.contact, self.regularise)
+            mode = MODES[self.mode]
+            contact = regularise_contact(self.contact, self.regularise, mode, self.motion)
             settings = Settings(self.solver, self.tolerance)
             inputs = self.inputs._replace(contact=contact)
-            found = simulate(MODES[self.mode], inputs, settings)
+            found = simulate(mode, inputs, settings)
         return {name: values for name, (_, values) in found.data.items()}
 
     @contextmanager
@@ -299,9 +301,9 @@ def build_experiment(
         raise ConfigError(problems)
     contact = Contact(tip=built["tip"], sample=built["sample"], surface=built["surface"])
     _refuse_flow(contact, mode, built["motion"], document["motion"])
-    _refuse_run(contact, solver, run, document)
+    _refuse_run(contact, solver, run, document, mode, built["motion"])
     if mode.simulate is None:
-        used = regularise_contact(contact, run.regularise)
+        used = regularise_contact(contact, run.regularise, mode, built["motion"])
         _refuse_motion(used, mode.find_path(built["motion"]), solver, document["motion"])
     return Experiment(
         mode=mode.name,
@@ -333,13 +335,18 @@ def _list_unusable(run: schema.Run, solver: Solver | None, mode: Mode | None) ->
 
 
 def _refuse_run(
-    contact: Contact, solver: Solver | None, run: schema.Run, document: Mapping[str, Any]
+    contact: Contact,
+    solver: Solver | None,
+    run: schema.Run,
+    document: Mapping[str, Any],
+    mode: Mode,
+    motion: Any,
 ) -> None:
     """Raise ConfigError if the run cannot be checked, or the contact not be regularised."""
     written = document.get("run", {})
     try:
         plan_finer_run(run.check, solver, run.tolerance)
-        regularise_contact(contact, run.regularise)
+        regularise_contact(contact, run.regularise, mode, motion)
     except ValueError as error:
         key = "check" if str(error).startswith("check") else "regularise"
         reason = str(error).removeprefix("check = True: ")

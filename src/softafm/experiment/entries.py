@@ -18,6 +18,7 @@ from softafm.checks.validate import (
     check_tolerance,
     check_whole,
 )
+from softafm.modes.regularise import Regularise
 from softafm.units import quantities as units
 from softafm.units.respelling import respell_number
 
@@ -71,7 +72,7 @@ def _read_number(written: Any) -> float:
         raise ValueError("must be a finite number") from None
 
 
-def make_check(check: Callable[[float], float]) -> AfterValidator:
+def make_check(check: Callable[[Any], Any]) -> AfterValidator:
     """Return what refuses a number for the reason that a check gives after its name and value.
 
     What an object would refuse anyway is so reported for all values at once, before it is made.
@@ -93,6 +94,16 @@ def _read_cycles(written: Any) -> int | str:
         return check_whole("cycles", written, 1, 1_000_000)
     except ValueError:
         raise ValueError("must be a whole number from 1 to 1000000, or 'steady'") from None
+
+
+def _read_regularise(written: Any) -> Regularise:
+    words: dict[str, Regularise] = {"auto": "auto", "none": None}
+    if isinstance(written, str) and written in words:
+        return words[written]
+    try:
+        return _read_number(written)
+    except ValueError as error:
+        raise ValueError(f"{error}; or 'auto' or 'none'") from None
 
 
 def _read_points(written: Any) -> int:
@@ -226,11 +237,11 @@ Flag = Annotated[bool, BeforeValidator(_read_flag), Input("flag")]
 Tolerance = Annotated[
     float, BeforeValidator(_read_number), make_check(check_tolerance), Input("number", "0.01")
 ]
-Tabor = Annotated[
-    float,
-    BeforeValidator(_read_number),
-    make_check(lambda number: check_tabor("regularise", number)),
-    Input("number", "8"),
+Regularised = Annotated[
+    Regularise,
+    BeforeValidator(_read_regularise),
+    make_check(lambda tabor: check_tabor("", tabor) if isinstance(tabor, float) else tabor),
+    Input("word", "8"),
 ]
 Image = Annotated[
     Path, *_describe(_find_image, "the name of an image", Input("file", "grains.png"))

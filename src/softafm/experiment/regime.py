@@ -6,12 +6,19 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from softafm.checks.validate import LARGEST_TABOR
 from softafm.draw.summary import describe_misfit, describe_regularisation, describe_slowing
 from softafm.experiment.run import Source, make_experiment
 from softafm.experiment.scales import Regime
+from softafm.instrument.motion import is_steady
 from softafm.instrument.motions import find_lowest_height
 from softafm.modes import MODES, Foreseen, Row
-from softafm.modes.start import regularise_contact
+from softafm.modes.parting import (
+    estimate_parting_height,
+    estimate_work_at_speed,
+    round_up,
+)
+from softafm.modes.regularise import choose_tabor, is_beyond, regularise_contact
 from softafm.results.datasets import compute_edge_slowing
 from softafm.rheology.represented import Represented
 from softafm.solvers.energy import Energy, count_cohesive_lengths
@@ -21,14 +28,13 @@ from softafm.units.quantities import write_quantity
 if TYPE_CHECKING:
     from softafm.contact import Contact
     from softafm.experiment.config import Experiment
+    from softafm.instrument.motion import Motion
 
 _CHECKED, _TENTH = 4, 2.8
 """By experience: runs that one with its check is worth, and one with a tenth of the tolerance."""
 _USUAL = 1e-2
 """Tolerance for which solvers state what to expect."""
 _FLOWS = "flows"
-_SOFT, _ADVISED = 30, 8
-"""Tabor number from which on another is advised."""
 _FEW = 4
 """Creep times up to which each has a row of its own."""
 
@@ -87,6 +93,7 @@ def list_rows(experiment: "Experiment") -> list[Row]:
     found.append(Row("contact radius", write_quantity(radius, "m"), words))
     if bends:
         _add_lever(found, contact, experiment.cantilever.stiffness, radius)
+    _add_end(found, contact, motion, experiment.cantilever.stiffness if bends else None)
     found += case.rows
     found.append(Row(f"time of the {case.noun}", write_quantity(duration, "s"), ""))
     _add_sample(found, contact, duration, case.noun)
@@ -99,6 +106,8 @@ def estimate_seconds(experiment: "Experiment") -> float:
     """Return the order of magnitude of a run, s on one core."""
     contact, case = _make_case(experiment)
     runs = case.runs * (_CHECKED if experiment.check else 1)
+    if experiment.regularise == "auto" and contact is not experiment.contact:
+        runs += case.runs
     solver = _choose_solver(experiment)
     if solver.adaptive:
         runs *= _TENTH ** log10(_USUAL / experiment.tolerance)
@@ -107,8 +116,8 @@ def estimate_seconds(experiment: "Experiment") -> float:
 
 def _make_case(experiment: "Experiment") -> tuple["Contact", Foreseen]:
     """Return what comes in touch, and how."""
-    contact = regularise_contact(experiment.contact, experiment.regularise)
     mode = MODES[experiment.mode]
+    contact = regularise_contact(experiment.contact, experiment.regularise, mode, experiment.motion)
     return contact, mode.expect(experiment.inputs._replace(contact=contact))
 
 
@@ -158,23 +167,18 @@ def _add_adhesion(found: list[Row], contact: "Contact") -> None:
 
 
 def _add_regularisation(found: list[Row], experiment: "Experiment", contact: "Contact") -> None:
-    """Show what became of a soft contact, or what could."""
-    given = experiment.contact
-    if experiment.regularise is not None:
+    """Show what becomes of a soft contact, or that it stays as it is."""
+    given, regularise = experiment.contact, experiment.regularise
+    mode, motion = MODES[experiment.mode], experiment.motion
+    if choose_tabor(given, regularise, mode, motion) is not None:
         length = contact.surface.range
         words = describe_regularisation(given.tabor_softened, given.surface.range, length)
         words += describe_slowing(compute_edge_slowing(given, length))
+        words += "; a second run estimates the error" if regularise == "auto" else ""
         found.append(Row("range", write_quantity(length, "m"), words))
-    elif given.tabor_softened > _SOFT:
-        length = given.surface.range * given.tabor_softened / _ADVISED
-        try:
-            length = given.regularised(_ADVISED).surface.range
-            words = "would enlarge the range from {} to {}"
-        except ValueError:
-            words = "is not possible with this law, whose range is {}; one of {} would do"
-        words = words.format(write_quantity(given.surface.range, "m"), write_quantity(length, "m"))
-        words += describe_slowing(compute_edge_slowing(given, length))
-        found.append(Row("regularise", f"{_ADVISED:g}", words))
+    elif is_beyond(given, mode, motion):
+        words = f"the law stays: beyond a Tabor number of {LARGEST_TABOR:g} the run may fail"
+        found.append(Row("range", write_quantity(given.surface.range, "m"), words))
 
 
 def _add_sample(found: list[Row], contact: "Contact", duration: float, whole: str) -> None:
@@ -239,6 +243,20 @@ def _add_lever(found: list[Row], contact: "Contact", lever: float, radius: float
         share = stiffness / (stiffness + lever)
         words = f"2·E·a, {_name_slow_modulus(contact)}; lever bends by {share:.0%} of the way"
         found.append(Row("contact stiffness", write_quantity(stiffness, "N/m"), words))
+
+
+def _add_end(
+    found: list[Row], contact: "Contact", motion: "Motion", stiffness: float | None
+) -> None:
+    """Show that a motion is over before the tip has parted."""
+    height = float(motion.height(motion.breaks[-1]))
+    if not contact.adhesive or is_steady(motion) or find_lowest_height(motion) >= contact.reach:
+        return
+    work = estimate_work_at_speed(contact, motion.top_speed)
+    parted = estimate_parting_height(contact, work, stiffness)
+    if height < parted:
+        words = f"the tip parts at about {write_quantity(round_up(parted), 'm')}: start there"
+        found.append(Row("end of the motion", write_quantity(height, "m"), words))
 
 
 def _describe_tabor(tabor: float) -> str:

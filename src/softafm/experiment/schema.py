@@ -56,9 +56,9 @@ from softafm.experiment.entries import (
     QualityFactor,
     Ratio,
     Ratios,
+    Regularised,
     Speed,
     Stiffness,
-    Tabor,
     Temperature,
     Time,
     Times,
@@ -299,7 +299,7 @@ class Run(Table):
     tolerance: Tolerance = 1e-2
     profiles: Flag = False
     check: Flag = False
-    regularise: Tabor | None = None
+    regularise: Regularised = "auto"
 
 
 STEPPERS: dict[str, Stepper] = {

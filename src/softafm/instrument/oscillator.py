@@ -10,6 +10,7 @@ At resonance, r = 1 and F0 = k A0/Q, these are equations (29) and (30) of Rajabi
 heights go together; the slow drift of amplitude and phase away from them says which are stable.
 """
 
+from cmath import exp
 from dataclasses import dataclass
 from math import hypot, pi
 from typing import Any
@@ -74,6 +75,15 @@ class Drive:
         in_phase, behind = self.components(amplitude, virial, dissipation)
         return np.degrees(np.arctan2(behind, in_phase))
 
+    def drift(self, amplitude: float, phase: float, needed: complex) -> tuple[float, float]:
+        """dA/dt, m, and dφ/dt of a phase in rad, averaged over a cycle.
+
+        ``needed`` has the ``components`` as its real and imaginary part. Time is in units of 2r/ω0,
+        so that a free lever finds its amplitude in about Q of them.
+        """
+        surplus = (self.force * exp(1j * phase) - needed) / self.stiffness
+        return surplus.imag, surplus.real / amplitude
+
     def second_harmonic(self, amplitude: Any, virial: Any, dissipation: Any) -> Any:
         """Second harmonic of the deflection over its first, which the balance leaves out.
 
@@ -96,12 +106,10 @@ class Drive:
     ) -> Any:
         """Whether a solution attracts, from dV/dA and dE/dA at fixed height of the lever, J/m.
 
-        Averaged over a cycle, up to the factor 1/2mω,
+        The Jacobian of ``drift`` must have a negative trace and a positive determinant:
 
             dA/dt  ~ F0 sin φ − k A r/Q − E/(πA),
-            dφ/dt  ~ (F0 cos φ − k A (1 − r²) + 2V/A)/A,
-
-        whose Jacobian must have a negative trace and a positive determinant.
+            dφ/dt  ~ (F0 cos φ − k A (1 − r²) + 2V/A)/A.
         """
         in_phase, behind = self.components(amplitude, virial, dissipation)
         viscous = self._against[1]

@@ -22,7 +22,7 @@ NAMES = (
 
 @dataclass(frozen=True)
 class Curves:
-    """Computes force curves; ``options`` go to the mode."""
+    """Computes force curves of contacts as they are."""
 
     imaging: ForceVolume
     solver: Solver
@@ -44,7 +44,9 @@ class Curves:
 
     def _scalars(self, contact: Contact) -> list[float]:
         imaging = self.imaging
-        options: dict[str, Any] = {"solver": self.solver, "tolerance": self.tolerance}
+        options: dict[str, Any] = {
+            "solver": self.solver, "tolerance": self.tolerance, "regularise": None
+        }  # fmt: skip
         if imaging.cantilever is None:
             curve, path = force_distance(contact, imaging.motion, **options), "tip_height"
         else:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from softafm.checks.refusals import ConfigError, join_with_or, refuse_unknown, reword, show, suggest
 from softafm.experiment.config import build_table, load_document, set_value
-from softafm.experiment.entries import Frequency, Length, Ratio, Tabor, Tolerance, make_choice
+from softafm.experiment.entries import Frequency, Length, Ratio, Regularised, Tolerance, make_choice
 from softafm.experiment.schema import Table, build_choice, build_kind
 from softafm.experiment.takers import MAP_MODES, refuse_unless
 from softafm.maps.imaging import AmplitudeModulation, ForceVolume
@@ -16,6 +16,7 @@ from softafm.maps.map_tables import PATTERNS
 from softafm.maps.sample_map import SampleMap
 from softafm.maps.scan import scan
 from softafm.modes import MODES, Mode, approach, force_distance, spectroscopy
+from softafm.modes.regularise import Regularise
 from softafm.progress import Progress
 
 if TYPE_CHECKING:
@@ -37,7 +38,7 @@ class MapRun(Table):
     """``[run]`` of a map."""
 
     tolerance: Tolerance = 1e-2
-    regularise: Tabor | None = None
+    regularise: Regularised = "auto"
 
 
 @dataclass(frozen=True, eq=False)
@@ -58,7 +59,7 @@ class MapExperiment:
     imaging: AmplitudeModulation | ForceVolume
     materials: tuple[str, ...]
     tolerance: float
-    regularise: float | None
+    regularise: Regularise
     document: Mapping[str, Any]
 
     def run(self, workers: int = 1, progress: bool | Progress | None = None) -> "Dataset":

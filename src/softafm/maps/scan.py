@@ -13,12 +13,15 @@ import numpy as np
 
 from softafm.checks.gathering import Placed, gather
 from softafm.checks.kinds import refuse_other
-from softafm.checks.validate import check_tabor, check_tolerance, check_whole
+from softafm.checks.validate import check_tolerance, check_whole
 from softafm.contact import Contact
 from softafm.errors import AccuracyWarning
 from softafm.maps import curve_pixels, tapped_lines
 from softafm.maps.imaging import AmplitudeModulation, ForceVolume
 from softafm.maps.sample_map import SampleMap
+from softafm.maps.soft_pixels import doubt_soft_pixels, estimate_errors, regularise_further
+from softafm.modes import Mode, approach, force_distance
+from softafm.modes.regularise import Regularise, choose_tabor, regularise_contact
 from softafm.modes.start import (
     choose_solver,
     refuse_start_inside,
@@ -50,7 +53,7 @@ def scan(
     *,
     solver: Solver | None = None,
     tolerance: float = 1e-2,
-    regularise: float | None = None,
+    regularise: Regularise = "auto",
     workers: int = 1,
     progress: bool | Progress | None = None,
 ) -> "Dataset":
@@ -97,31 +100,41 @@ def scan(
     refuse_other("imaging", imaging, kinds, "an AmplitudeModulation or a ForceVolume")
     tolerance, workers = check_tolerance(tolerance), check_whole("workers", workers, 1, 1024)
     solver = choose_solver(solver)
-    contacts = sample.pixels.contacts
-    if regularise is not None:
-        tabor = check_tabor("regularise", regularise)
-        contacts = [_call_at_pixel(sample, i, c.regularised, tabor) for i, c in enumerate(contacts)]
+    given, number = sample.pixels.contacts, sample.pixels.number
+    moved: tuple[Regularise, Mode, Any] = regularise, approach.MODE, None
+    if isinstance(imaging, ForceVolume):
+        moved = regularise, force_distance.MODE, imaging.motion
+    tabors = [choose_tabor(contact, *moved) for contact in given]
+    contacts, coarser = (
+        [_call_at_pixel(sample, i, choose, each, *moved) for i, each in enumerate(given)]
+        for choose in (regularise_contact, regularise_further)
+    )
     options = solver, tolerance, workers
-    take: Callable[[Progress | None], _Taken]
+    take: Callable[[list[Contact], Progress | None], _Taken]
     refuse: Callable[[Contact], None]
     if isinstance(imaging, AmplitudeModulation):
-        take = partial(_tap_map, sample, contacts, imaging, *options)
+        take = partial(_tap_map, sample, imaging, *options)
         refuse = refuse_tapped_flow
     else:
         refuse_unable(solver, imaging.motion)
-        take = partial(_take_curves, sample, contacts, imaging, *options)
+        take = partial(_take_curves, sample, imaging, *options)
         refuse = partial(refuse_start_inside, motion=imaging.motion)
     for i, contact in enumerate(contacts):
         _call_at_pixel(sample, i, refuse, contact)
     with make_reporter(progress) as report:
-        names, values, failures, doubts, done = take(report)
+        names, values, failures, doubts, done = take(contacts, report)
+        doubts = [*doubt_soft_pixels(contacts, *moved[1:]), *doubts]
+        if coarser != contacts:
+            other = take(coarser, report)[1]
+            doubts += estimate_errors(given, contacts, number, names, values, other)
     warned = _collect_warnings(failures, doubts, sample)
     for warning in warned:
         warnings.warn(warning, stacklevel=2)
     result = _assemble(sample, imaging, solver, tolerance, names, values, warned, done)
     result.attrs["failures"] = json.dumps(failures)
-    if regularise is not None:
-        result.attrs["regularised_tabor"] = float(regularise)
+    asked = [tabor for tabor in tabors if tabor is not None]
+    if asked:
+        result.attrs["regularised_tabor"] = asked[0]
     return result
 
 
@@ -138,11 +151,11 @@ def _call_at_pixel(
 
 def _tap_map(
     sample: SampleMap,
-    contacts: list[Contact],
     imaging: AmplitudeModulation,
     solver: Solver,
     tolerance: float,
     workers: int,
+    contacts: list[Contact],
     report: Progress | None,
 ) -> _Taken:
     """Go down the first column, along a few lines, then along all others."""
@@ -190,11 +203,11 @@ def _tap_line(
 
 def _take_curves(
     sample: SampleMap,
-    contacts: list[Contact],
     imaging: ForceVolume,
     solver: Solver,
     tolerance: float,
     workers: int,
+    contacts: list[Contact],
     report: Progress | None,
 ) -> _Taken:
     """Take a force curve of each different contact."""

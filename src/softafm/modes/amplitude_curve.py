@@ -1,9 +1,10 @@
 """All pairs of amplitude and height that a driven lever can have, and those that it takes."""
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable
 from typing import Any, NamedTuple
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from softafm.instrument.oscillator import Drive
 from softafm.modes.tap_map import TapMap
@@ -49,66 +50,68 @@ class AmplitudeCurve:
     """
 
     def __init__(self, taps: TapMap, drive: Drive):
-        self._taps, self._drive = taps, drive
+        self._taps, self.drive = taps, drive
 
     def at_amplitudes(self, amplitudes: np.ndarray) -> Solutions:
         """All solutions of given amplitudes, m, shape (n,)."""
         approaches = np.linspace(self._taps.farthest, self._taps.nearest, _APPROACHES)
         row, approach = _find_zeros(lambda a, d: self._excess(a, d), amplitudes, approaches)
-        return self._solutions(row, amplitudes[row], approach)
+        step = 1e-3 * np.minimum(amplitudes[row], self._taps.unit)
+        return self._solutions(row, amplitudes[row], approach, step)
 
     def at_heights(self, heights: np.ndarray) -> Solutions:
         """All solutions at given mean heights, m, shape (n,), within the amplitudes of the map."""
-        span = 1e-3 * (self._taps.highest - self._taps.lowest)
-        amplitudes = np.linspace(self._taps.lowest - span, self._taps.highest + span, _AMPLITUDES)
+        amplitudes = np.linspace(self.lowest, self.highest, _AMPLITUDES)
         row, amplitude = _find_zeros(lambda z, a: self._excess(a, z - a), heights, amplitudes)
-        return self._solutions(row, amplitude, heights[row] - amplitude)
+        # Across the interval in which they were found: finer ripples of the map do not count.
+        step = (amplitudes[1] - amplitudes[0]) / 2
+        return self._solutions(row, amplitude, heights[row] - amplitude, step)
 
-    def observables(self, solutions: Solutions) -> np.ndarray:
-        """Observables of solutions, shape (7, n)."""
-        return self._taps.observables(solutions.amplitude, solutions.approach)
+    def observables(self, amplitude: ArrayLike, approach: ArrayLike) -> np.ndarray:
+        """Observables at amplitudes and closest approaches, m, shape (7, n)."""
+        return self._taps.observables(amplitude, approach)
 
-    def swept(self, heights: np.ndarray) -> tuple[np.ndarray, ...]:
-        """What is recorded at heights, m, passed one after the other, and then all the way back.
+    @property
+    def lowest(self) -> float:
+        """Lowest amplitude at which solutions are sought, m: a little below that of the map."""
+        return self._taps.lowest - self._span
 
-        Two arrays: amplitude, phase and observables, (9, n) in the order of ``heights``. The lever
-        keeps to its branch while that attracts, and then jumps to the nearest amplitude that does.
-        NaN where there is none.
+    @property
+    def highest(self) -> float:
+        """Highest amplitude at which solutions are sought, m: a little above that of the map."""
+        return self._taps.highest + self._span
+
+    @property
+    def _span(self) -> float:
+        return 1e-3 * (self._taps.highest - self._taps.lowest)
+
+    def tapped(self, amplitude: ArrayLike, height: ArrayLike) -> np.ndarray:
+        """V and E, J, at amplitudes and mean heights, m: shape (2, *broadcast).
+
+        Beyond the closest approaches of the map they are those at its ends.
         """
-        found = self.at_heights(heights)
-        columns = np.vstack([found.amplitude, found.phase, self.observables(found)])
-        there = range(heights.size)
-        return tuple(_follow(columns, found, way) for way in (there, reversed(there)))
+        approach = np.subtract(height, amplitude)
+        within = np.clip(approach, self._taps.nearest, self._taps.farthest)
+        return self._taps.virial_and_dissipation(amplitude, within)
+
+    def is_too_weak(self, amplitude: np.ndarray, height: np.ndarray) -> np.ndarray:
+        """Whether the drive cannot hold amplitudes at mean heights, m."""
+        return self.drive.excess(amplitude, *self.tapped(amplitude, height)) > 0
 
     def _excess(self, amplitude: np.ndarray, approach: np.ndarray) -> np.ndarray:
         values = self._taps.virial_and_dissipation(amplitude, approach)
-        return self._drive.excess(amplitude, *values)
+        return self.drive.excess(amplitude, *values)
 
-    def _solutions(self, row: np.ndarray, amplitude: np.ndarray, approach: np.ndarray) -> Solutions:
+    def _solutions(
+        self, row: np.ndarray, amplitude: np.ndarray, approach: np.ndarray, step: Any
+    ) -> Solutions:
         """Phase and stability; the slopes are those at fixed height, where d falls as A rises."""
-        step = 1e-3 * np.minimum(amplitude, self._taps.unit)
         more, less = (
             self._taps.virial_and_dissipation(amplitude + s, approach - s) for s in (step, -step)
         )
         values = self._taps.virial_and_dissipation(amplitude, approach)
-        stable = self._drive.stable(amplitude, *values, *(more - less) / (2 * step))
-        return Solutions(row, amplitude, approach, self._drive.phase(amplitude, *values), stable)
-
-
-def _follow(columns: np.ndarray, found: Solutions, way: Iterable[int]) -> np.ndarray:
-    """Return the column of ``columns`` (m, solutions) that a lever takes in each row of ``found``.
-
-    ``way`` is the order in which the rows, all of them, are passed.
-    """
-    values = np.full((len(columns), len(rows := list(way))), np.nan)
-    last = None
-    for row in rows:
-        choices = np.flatnonzero((found.row == row) & found.stable)
-        if choices.size:
-            wanted = found.amplitude[choices].max() if last is None else last
-            nearest = choices[np.argmin(np.abs(found.amplitude[choices] - wanted))]
-            last, values[:, row] = found.amplitude[nearest], columns[:, nearest]
-    return values
+        stable = self.drive.stable(amplitude, *values, *(more - less) / (2 * step))
+        return Solutions(row, amplitude, approach, self.drive.phase(amplitude, *values), stable)
 
 
 def _find_zeros(

@@ -4,7 +4,7 @@ Rajabifar et al. 2021, equations (29) to (32), and their general form off resona
 """
 
 import json
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
@@ -20,6 +20,8 @@ from softafm.instrument.cantilever import Cantilever
 from softafm.instrument.motions import Sine
 from softafm.instrument.oscillator import Drive
 from softafm.modes.amplitude_curve import BRANCHES, AmplitudeCurve, Solutions
+from softafm.modes.audit import Audit, audit, write_audits
+from softafm.modes.confirm import Confirmed, confirm_solutions
 from softafm.modes.driven import (
     AmplitudeSweep,
     doubt_sine,
@@ -27,9 +29,11 @@ from softafm.modes.driven import (
     make_drive,
     ratios_of,
 )
+from softafm.modes.lever_sweep import sweep_lever
 from softafm.modes.mode import Mode
 from softafm.modes.parts import Axes, Foreseen, Inputs, Outcome, Row, Settings
 from softafm.modes.perform import perform
+from softafm.modes.regularise import Regularise
 from softafm.modes.scales import Scales, tap_scales
 from softafm.modes.start import choose_solver, refuse_tapped_flow
 from softafm.modes.tap_map import OBSERVABLES, TapMap
@@ -43,7 +47,7 @@ from softafm.units.quantities import write_quantity
 if TYPE_CHECKING:
     from xarray import Dataset
 
-_HEIGHTS, _CHECKS = 241, 6
+_HEIGHTS = 241
 _TAPS = 130
 """How many taps an approach curve takes, by experience."""
 
@@ -59,7 +63,7 @@ def approach_curve(
     tolerance: float = 1e-2,
     progress: bool | Progress | None = None,
     check: bool = False,
-    regularise: float | None = None,
+    regularise: Regularise = "auto",
 ) -> "Dataset":
     """Heights of a tapping lever for given amplitudes, and what it records on approach and retract.
 
@@ -93,7 +97,8 @@ def approach_curve(
         ``force_mean``, ``force_max``, ``force_min``, ``contact_time``, ``indentation``. Over
         ``sweep_height``, what an instrument records while Z comes down (``approach_...``) and goes
         up again (``retract_...``): ``amplitude``, ``phase`` and the same observables; NaN where
-        the amplitude leaves the range of ``amplitude_ratio``. All SI but the phase.
+        the amplitude leaves the range of ``amplitude_ratio``. The retract starts from the last
+        height at which the approach is known. All SI but the phase.
 
     Raises
     ------
@@ -118,12 +123,15 @@ def _simulate(inputs: Inputs, settings: Settings) -> Outcome:
     drive, frequency = make_drive(inputs.cantilever, free_amplitude, sweep.drive_frequency)
 
     doubts: list[Placed] = []
+    audits: list[Audit] = []
 
     def tap(amplitude: float, approach: float) -> np.ndarray:
         warned: list[AccuracyWarning] = []
         with collect_warnings(warned):
             motion = Sine(amplitude + approach, amplitude, frequency, "steady")
             history = solve(solver, contact, motion, tolerance=tolerance)
+        audits.append(audit(contact, history, tolerance))
+        warned += audits[-1].problems
         doubts.extend(((amplitude, approach), warning) for warning in warned)
         found = observe_taps(contact, motion, history)
         return np.array([found[name] for name in OBSERVABLES])
@@ -138,9 +146,17 @@ def _simulate(inputs: Inputs, settings: Settings) -> Outcome:
                 report(1 - np.exp(-done / 80), f"{done} taps")
     curve = AmplitudeCurve(taps, drive)
     found = curve.at_amplitudes(ratios * free_amplitude)
-    doubtful = list(_collect_warnings(taps, tap, drive, tolerance, found))
-    checks = _solutions_to_check(found).size
-    warned = [*gather(doubts, taps.taps + checks, "taps", _describe_place), *doubtful]
+    heights = found.amplitude + found.approach
+    if heights.size:
+        heights = np.linspace(heights.max(), heights.min(), _HEIGHTS)
+    confirmed = confirm_solutions(found, taps, tap, drive, tolerance)
+    found = found._replace(
+        approach=confirmed.approach, phase=drive.phase(found.amplitude, *confirmed.observables[:2])
+    )
+    warned = [
+        *gather(doubts, taps.taps + confirmed.taps, "taps", _describe_place),
+        *_collect_warnings(drive, found, confirmed),
+    ]
     for warning in warned:
         warn_caller(warning)
     motion = {
@@ -150,8 +166,16 @@ def _simulate(inputs: Inputs, settings: Settings) -> Outcome:
         "drive_frequency": frequency,
     }
     parts = {**inputs.parts, "motion": motion}
-    data, coordinates = _make_tables(curve, ratios, found)
-    return Outcome(parts, solver, tolerance, data, coordinates, tuple(warned), {"taps": taps.taps})
+    data, coordinates = _tabulate(ratios, found, confirmed.observables)
+    coordinates["sweep_height"] = ("sweep_height", heights)
+    names = ("amplitude", "phase", *OBSERVABLES)
+    for direction, swept in zip(DIRECTIONS, sweep_lever(curve, heights), strict=True):
+        for name, row in zip(names, swept, strict=True):
+            data[f"{direction}_{name}"] = ("sweep_height", row)
+    return Outcome(
+        parts, solver, tolerance, data, coordinates, tuple(warned), {"taps": taps.taps},
+        write_audits(audits),
+    )  # fmt: skip
 
 
 def _describe_place(tap: tuple[float, float]) -> str:
@@ -160,40 +184,18 @@ def _describe_place(tap: tuple[float, float]) -> str:
     return f"amplitude {write_quantity(amplitude, 'm')} and mean height {height}"
 
 
-def _solutions_to_check(found: Solutions) -> np.ndarray:
-    """Return the indices of the solutions that are run again, to see whether they hold."""
-    count = found.amplitude.size
-    return np.unique(np.linspace(0, count - 1, min(count, _CHECKS)).astype(int))
-
-
 def _collect_warnings(
-    taps: TapMap,
-    tap: Callable[[float, float], np.ndarray],
-    drive: Drive,
-    tolerance: float,
-    found: Solutions,
+    drive: Drive, found: Solutions, confirmed: Confirmed
 ) -> Iterator[AccuracyWarning]:
-    """Yield warnings of solutions that are missing, too many, or do not hold when run again."""
+    """Yield warnings of solutions that are missing, too many, or do not hold when they are run."""
     if found.amplitude.size == 0:
         yield AccuracyWarning("no height goes with any of the amplitudes: there is nothing to plot")
         return
-    values = taps.virial_and_dissipation(found.amplitude, found.approach)
-    if (doubtful := doubt_sine(drive, found.amplitude, *values)) is not None:
+    doubtful = doubt_sine(drive, found.amplitude, *confirmed.observables[:2])
+    if doubtful is not None:
         yield doubtful
-    wrong = []
-    for i in _solutions_to_check(found):
-        amplitude, approach = found.amplitude[i], found.approach[i]
-        excess = float(drive.excess(amplitude, *tap(amplitude, approach)[:2]))
-        slope = taps.excess_slope(amplitude, approach)
-        off = abs(excess / slope)
-        if abs(excess) > 2 * tolerance and off > 0.1 * taps.unit:
-            text = (
-                f"the solution of amplitude {amplitude:.3g} m is off by about {off:.2g} m in "
-                "height: taps between those that were run are not smooth"
-            )
-            wrong.append(((amplitude, approach), AccuracyWarning(text, off)))
     yield from gather(
-        wrong, _solutions_to_check(found).size, "solutions that were checked", _describe_place
+        confirmed.wrong, confirmed.solutions, "solutions that were run", _describe_place
     )
     labels = list(zip(found.row, found.branch, strict=True))
     for branch in ("attractive", "repulsive"):
@@ -204,13 +206,13 @@ def _collect_warnings(
             )
 
 
-def _make_tables(
-    curve: AmplitudeCurve, ratios: np.ndarray, found: Solutions
+def _tabulate(
+    ratios: np.ndarray, found: Solutions, values: np.ndarray
 ) -> tuple[dict[str, Labelled], dict[str, Labelled]]:
-    """Return variables and coordinates of the dataset, each as (dims, values)."""
+    """Return the solutions, of observables (7, n), as variables and coordinates of the dataset."""
     names = ("mean_height", "phase", *OBSERVABLES)
     table = np.full((len(names), len(BRANCHES), ratios.size), np.nan)
-    columns = np.vstack([found.amplitude + found.approach, found.phase, curve.observables(found)])
+    columns = np.vstack([found.amplitude + found.approach, found.phase, values])
     branch = found.branch
     for i in np.argsort(found.approach):  # the farthest last
         table[:, BRANCHES.index(branch[i]), found.row[i]] = columns[:, i]
@@ -218,16 +220,9 @@ def _make_tables(
         name: (("branch", "amplitude_ratio"), values)
         for name, values in zip(names, table, strict=True)
     }
-    heights = found.amplitude + found.approach
-    sweep = np.linspace(heights.max(), heights.min(), _HEIGHTS) if heights.size else heights
-    names = ("amplitude", "phase", *OBSERVABLES)
-    for label, values in zip(("approach", "retract"), curve.swept(sweep), strict=True):
-        for name, row in zip(names, values, strict=True):
-            data[f"{label}_{name}"] = ("sweep_height", row)
     coordinates: dict[str, Labelled] = {
         "branch": ("branch", list(BRANCHES)),
         "amplitude_ratio": ("amplitude_ratio", ratios),
-        "sweep_height": ("sweep_height", sweep),
     }
     return data, coordinates
 

@@ -4,6 +4,7 @@ import json
 import warnings
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from functools import partial
 from typing import TYPE_CHECKING, Any, NamedTuple, cast
 
 import numpy as np
@@ -110,7 +111,8 @@ def compare_with_finer(
         result.attrs["check_solver"] = json.dumps(describe(finer.solver))
     found: dict[str, Difference] = {}
     try:
-        other = _run_again(finer, repeat, progress)
+        again = partial(repeat, solver=finer.solver, tolerance=finer.tolerance)
+        other = run_again(again, progress, "check")
     except DivergedError as error:
         problem: str | None = (
             f"the check, with {finer.in_words}, could not be finished: {error}; the error of this "
@@ -118,7 +120,7 @@ def compare_with_finer(
         )
     else:
         judged = scales(other)
-        found = _find_differences(mode, result, other, judged)
+        found = find_differences(mode, result, other, judged)
         problem = _say_largest(found, tolerance, finer) or _repeat_doubt(other, finer)
         if "mean_height" in found:
             height = judged.fixed["mean_height"] * abs(found["mean_height"].relative)
@@ -127,27 +129,28 @@ def compare_with_finer(
     largest = max((abs(difference.relative) for difference in found.values()), default=np.nan)
     result.attrs["check_largest"] = largest
     if problem is not None:
-        before = result.attrs["warnings"]
-        result.attrs["warnings"] = f"{before}\n{problem}" if before else problem
-        warn_caller(AccuracyWarning(problem))
+        record_warning(result, AccuracyWarning(problem))
 
 
-def _run_again(
-    finer: Finer, repeat: Callable[..., "Dataset"], progress: bool | Progress | None
+def record_warning(result: "Dataset", warning: AccuracyWarning) -> None:
+    """Warn, and add the warning to those of a result."""
+    before = result.attrs["warnings"]
+    result.attrs["warnings"] = f"{before}\n{warning}" if before else str(warning)
+    warn_caller(warning)
+
+
+def run_again(
+    repeat: Callable[..., "Dataset"], progress: bool | Progress | None, why: str
 ) -> "Dataset":
-    """Run again, without the warnings of that run."""
+    """Run again, without the warnings of that run; its messages of progress begin with ``why``."""
     with warnings.catch_warnings(), make_reporter(progress) as report:
         warnings.simplefilter("ignore", AccuracyWarning)
 
         def pass_on(fraction: float, message: str) -> None:
             if report is not None:
-                report(fraction, f"check: {message}")
+                report(fraction, f"{why}: {message}")
 
-        return repeat(
-            solver=finer.solver,
-            tolerance=finer.tolerance,
-            progress=None if report is None else pass_on,
-        )
+        return repeat(progress=None if report is None else pass_on)
 
 
 def _say_largest(found: dict[str, Difference], tolerance: float, finer: Finer) -> str | None:
@@ -172,10 +175,10 @@ def _repeat_doubt(other: "Dataset", finer: Finer) -> str | None:
     return f"the check, with {finer.in_words}, warns: {doubts[0]}" if doubts else None
 
 
-def _find_differences(
+def find_differences(
     mode: "Mode", result: "Dataset", other: "Dataset", scales: "Scales"
 ) -> dict[str, Difference]:
-    """Compare all observables that have a unit, and how many solutions there are."""
+    """Compare all observables that have a unit, and how many solutions there are, by name."""
     found = {}
     for name in mode.observed:
         units = other[name].attrs["units"]

@@ -10,6 +10,7 @@ from softafm.instrument.motions import Sine, Trajectory, Triangle
 from softafm.modes.mode import Mode
 from softafm.modes.parts import Layout
 from softafm.modes.perform import perform
+from softafm.modes.regularise import Regularise
 from softafm.progress import Progress
 from softafm.results.content import RAMPED, observables
 from softafm.solvers.history import History
@@ -28,7 +29,7 @@ def force_distance(
     profiles: bool = False,
     progress: bool | Progress | None = None,
     check: bool = False,
-    regularise: float | None = None,
+    regularise: Regularise = "auto",
 ) -> "Dataset":
     """Force on a tip that is moved through ``motion`` above a surface flat and relaxed at first.
 
@@ -51,10 +52,13 @@ def force_distance(
         fixed steps, and state the differences in the attributes ``check_...``. One above the
         tolerance raises ``AccuracyWarning``.
     regularise
-        Tabor number, 0.1 to 100, to which that of a softer contact is lowered by enlarging the
+        Tabor number, 0.1 to 1000, to which that of a softer contact is lowered by enlarging the
         range of the surface law at fixed work of adhesion (``Contact.regularised``). What adhesion
         a viscoelastic sample has at a speed depends on the range: ``softafm docs soft`` tells what
-        to do. The law as it was given stays in the attribute ``experiment``.
+        to do. The law as it was given stays in the attribute ``experiment``. ``"auto"`` changes
+        nothing up to a Tabor number of 1000; beyond it, where the solver may not succeed, the
+        contact is regularised to 500, and a second run at 250 estimates the error, of which
+        ``AccuracyWarning`` tells. None always keeps the law, and warns beforehand.
 
     Returns
     -------
@@ -84,14 +88,14 @@ def observe_ramp(contact: Contact, motion: Any, history: History) -> dict[str, A
 
 def measure_ramp(history: History, path: np.ndarray) -> dict[str, Any]:
     """Return the scalars of a force curve; ``path`` (n,), m, is the motion as carried out."""
-    force = history.force
+    force, energies = history.force, history.energies()
     lowest = history.time[np.argmin(path)]
     return {
         "force_max": history.extreme(force, 1),
         "force_min": history.extreme(force, -1),
         "force_min_approach": history.extreme(force, -1, stop=lowest),
-        "loop_energy": -history.integrate(force, history.motion.velocity),
-        "viscous_loss": history.integrate(history.viscous_power, np.ones_like),
+        "loop_energy": energies.best,
+        "viscous_loss": energies.viscous,
     }
 
 

@@ -50,6 +50,7 @@ class Outcome(NamedTuple):
 
     ``parts`` are what took part besides the contact, by name, ``solver`` and ``tolerance`` those
     that were used, and ``data`` and ``coordinates`` variables of the result, as (dims, values).
+    ``audit`` is what ``softafm.modes.audit`` found of its runs, JSON; "" if it was not asked.
     """
 
     parts: Mapping[str, Any]
@@ -59,6 +60,7 @@ class Outcome(NamedTuple):
     coordinates: dict[str, "Labelled"]
     warnings: tuple[Warning, ...] = ()
     diagnostics: Mapping[str, float] = MappingProxyType({})
+    audit: str = ""
 
 
 class Row(NamedTuple):

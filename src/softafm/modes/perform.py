@@ -6,14 +6,17 @@ from inspect import Parameter, signature
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
+from softafm.checks.callers import warn_caller
 from softafm.checks.refusals import show, suggest
 from softafm.contact import Contact
 from softafm.instrument.cantilever import Cantilever
+from softafm.modes.audit import audit
 from softafm.modes.check import compare_with_finer, plan_finer_run
 from softafm.modes.mode import MODES, Mode
 from softafm.modes.parts import Inputs, Outcome, Settings
 from softafm.modes.refusals import refuse_observed, refuse_strange
-from softafm.modes.start import carry, refuse_other_than_cantilever, regularise_contact
+from softafm.modes.regularise import Regularise, choose_tabor, doubt_softness, estimate_error
+from softafm.modes.start import carry, refuse_other_than_cantilever
 from softafm.progress import Progress
 from softafm.results.content import HISTORY
 from softafm.results.datasets import assemble_history, history_variables, record_regularisation
@@ -37,7 +40,7 @@ def perform(
     profiles: bool = False,
     progress: bool | Progress | None = None,
     check: bool = False,
-    regularise: float | None = None,
+    regularise: Regularise = "auto",
     **unknown: Any,
 ) -> "Dataset":
     """Run a mode and return its result, as the public functions of all modes do.
@@ -72,7 +75,8 @@ def perform(
     if MODES.get(mode.name) is not mode:
         raise ValueError(f"mode '{mode.name}' is not known: call softafm.modes.register with it")
     finer = plan_finer_run(check, solver, tolerance)
-    given, contact = contact, regularise_contact(contact, regularise)
+    tabor, given = choose_tabor(contact, regularise, mode, motion), contact
+    contact = given if tabor is None else given.regularised(tabor)
     if mode.lever:
         refuse_other_than_cantilever(cantilever)
     elif cantilever is not None:
@@ -81,14 +85,24 @@ def perform(
             f"'{mode.name}' be 'stiffness' or 'resonator'"
         )
     inputs = Inputs(contact, motion, cantilever, tables)
+    doubts = doubt_softness(contact, mode, motion)
+    for doubt in doubts:
+        warn_caller(doubt)
     found = simulate(mode, inputs, Settings(solver, tolerance, profiles, progress))
     refuse_observed(mode, found)
+    found = found._replace(warnings=(*doubts, *found.warnings))
     result = assemble_history(mode.name, contact, *found)
-    record_regularisation(result, given, contact, regularise)
+    record_regularisation(result, given, contact, tabor)
+    scales = partial(mode.scales, inputs)
+    repeat = partial(
+        perform, mode, motion=motion, cantilever=cantilever, tables=tables, regularise=None
+    )
+    if tabor is not None and regularise == "auto":
+        again = partial(repeat, solver=solver, tolerance=tolerance)
+        estimate_error(mode, result, given, scales, again, progress)
     if finer is not None:
-        repeat = partial(perform, mode, contact, motion, cantilever, tables=tables)
-        scales = partial(mode.scales, inputs)
-        compare_with_finer(mode, result, finer, found.tolerance, scales, repeat, progress)
+        again = partial(repeat, contact)
+        compare_with_finer(mode, result, finer, found.tolerance, scales, again, progress)
     return result
 
 
@@ -103,8 +117,13 @@ def simulate(mode: Mode, inputs: Inputs, settings: Settings) -> Outcome:
     assert mode.observe is not None
     values = mode.observe(contact, motion, history)
     refuse_strange(mode, values)
+    audited = audit(contact, history, tolerance, **lever)
+    for warning in audited.problems:
+        warn_caller(warning)
     observed = {name: (mode.observables[name].dims, each) for name, each in values.items()}
     data = {name: data[name] for name in HISTORY} | observed | data  # shapes of the surface last
+    warnings = (*history.warnings, *audited.problems)
     return Outcome(
-        inputs.parts, solver, tolerance, data, coordinates, history.warnings, history.diagnostics
-    )
+        inputs.parts, solver, tolerance, data, coordinates, warnings, history.diagnostics,
+        audited.write(),
+    )  # fmt: skip

@@ -11,8 +11,9 @@ if TYPE_CHECKING:
 
     from softafm.modes.parts import Inputs
 
-_TAP = 0.02
-"""Part of force times amplitude below which the energy of a tap counts as none."""
+_FORCE, _ENERGY, _TAP = 0.01, 0.02, 0.02
+"""Below which parts of the largest force a force counts as none, and of that times a length an
+energy: the reach of the contact, or of taps this part of their amplitude."""
 
 
 @dataclass(frozen=True)
@@ -39,23 +40,24 @@ class Scales:
 
 
 def force_scales(inputs: "Inputs", result: "Dataset") -> Scales:
-    """Return the scales of a force curve.
+    """Return the scales of a force curve: every observable counts by itself.
 
-    Those of force and energy are the largest force, and its work over the reach of the contact.
+    At least they are parts of the largest force, and of its work over the reach of the contact.
     """
     force, reach = largest_force(result), inputs.contact.reach
-    return Scales({"N": force, "J": force * reach, "m": reach})
+    return Scales({"N": _FORCE * force, "J": _ENERGY * force * reach, "m": reach})
 
 
 def tap_scales(contact: Any, amplitude: Any, frequency: float, result: "Dataset") -> Scales:
     """Return the scales of taps of an amplitude, m, shape () or (n,), and a frequency, Hz.
 
-    Energies count above a part of force times amplitude, times above that of a contact that is
-    just felt.
+    Forces and energies count above parts of the largest force and of that times the amplitude,
+    times above that of a contact that is just felt.
     """
     force = largest_force(result)
     grazing = np.sqrt(2 * contact.reach / amplitude) / (np.pi * frequency)
-    return Scales({"N": force, "J": force * (_TAP * amplitude), "s": grazing, "m": contact.reach})
+    energy = _ENERGY * force * _TAP * amplitude
+    return Scales({"N": _FORCE * force, "J": energy, "s": grazing, "m": contact.reach})
 
 
 def largest_force(result: "Dataset") -> Any:

@@ -9,6 +9,7 @@ from softafm.modes.force_distance import MOTIONS, measure_ramp
 from softafm.modes.mode import Mode
 from softafm.modes.parts import Layout
 from softafm.modes.perform import perform
+from softafm.modes.regularise import Regularise
 from softafm.progress import Progress
 from softafm.results.content import RAMPED, observables
 from softafm.solvers.history import History
@@ -28,7 +29,7 @@ def force_spectroscopy(
     profiles: bool = False,
     progress: bool | Progress | None = None,
     check: bool = False,
-    regularise: float | None = None,
+    regularise: Regularise = "auto",
 ) -> "Dataset":
     """Force and deflection of a cantilever whose base moves far slower than it vibrates.
 

@@ -5,7 +5,7 @@ from typing import Any
 
 from softafm.checks.callers import warn_caller
 from softafm.checks.kinds import refuse_other
-from softafm.checks.validate import check_tabor, check_tolerance
+from softafm.checks.validate import check_tolerance
 from softafm.contact import Contact
 from softafm.errors import AccuracyWarning
 from softafm.instrument.agreement import check_motion
@@ -55,15 +55,6 @@ def choose_solver(solver: Solver | None) -> Solver:
         return Energy()
     check_solver(solver)
     return solver
-
-
-def regularise_contact(contact: Contact, tabor: float | None) -> Contact:
-    """Return the contact that a mode's option ``regularise`` stands for.
-
-    ValueError if it is none, or the number is out of range.
-    """
-    refuse_other("contact", contact, Contact, "a softafm.Contact")
-    return contact if tabor is None else contact.regularised(check_tabor("regularise", tabor))
 
 
 def doubt_window(contact: Contact, motion: Motion) -> tuple[AccuracyWarning, ...]:

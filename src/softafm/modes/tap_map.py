@@ -18,6 +18,8 @@ from softafm.results.content import TAPPED
 OBSERVABLES = TAPPED
 _LINES = 5
 _MOST_SAMPLES = 80
+_AWAY, _HEIGHT = 3.0, 0.3
+"""Of an excess, and of the rise along d over a unit: what may be missed, with 1, in tolerances."""
 _FARTHEST, _DEEPEST = 500.0, 3000.0
 
 
@@ -149,6 +151,11 @@ class TapMap:
                 expected = self._excess_at(line, interpolant(middle))
                 found = self._excess_at(line, self._sample(line, middle))
                 yield self.taps
-                if abs(found - expected) > self._accuracy and high - low > 1e-3 * self.unit:
+                one, other = (self._excess_at(line, self._sample(line, end)) for end in (low, high))
+                rise = abs(other - one)
+                width = abs(high - low)
+                # More is allowed where no solution is near, or in force what is little in height.
+                allowed = max(1 + _AWAY * abs(found), _HEIGHT * self.unit / width * rise)
+                if abs(found - expected) > self._accuracy * allowed and width > 1e-3 * self.unit:
                     missed += [(low, middle), (middle, high)]
             intervals = missed

@@ -1,6 +1,5 @@
 """Tapping: the tip oscillates with given amplitude about a given mean height."""
 
-from collections.abc import Callable
 from itertools import pairwise
 from typing import TYPE_CHECKING, Any, Literal
 
@@ -11,6 +10,7 @@ from softafm.instrument.motions import Sine
 from softafm.modes.mode import Mode
 from softafm.modes.parts import Layout
 from softafm.modes.perform import perform
+from softafm.modes.regularise import Regularise
 from softafm.modes.scales import tap_scales
 from softafm.progress import Progress
 from softafm.results.content import observables
@@ -33,7 +33,7 @@ def tapping_cycle(
     profiles: bool = False,
     progress: bool | Progress | None = None,
     check: bool = False,
-    regularise: float | None = None,
+    regularise: Regularise = "auto",
 ) -> "Dataset":
     """Cycles of h0 = mean_height + amplitude·cos(2πft) from the top, the surface flat at first.
 
@@ -79,14 +79,15 @@ def observe_taps(contact: Contact, motion: Sine, history: History) -> dict[str, 
     period = 1 / motion.frequency
     tops = period * np.arange(motion.periods + 1)
 
-    def each_cycle(weight: Callable[[np.ndarray], Any]) -> np.ndarray:
-        return np.array([history.integrate(history.force, weight, a, b) for a, b in pairwise(tops)])
+    force = history.force
 
-    virial = each_cycle(lambda t: motion.height(t) - motion.mean_height) / period
-    dissipation = -each_cycle(motion.velocity)
+    def weigh(time: np.ndarray) -> np.ndarray:
+        return (motion.height(time) - motion.mean_height) / period
+
+    virial = np.array([history.integrate(force, weigh, a, b) for a, b in pairwise(tops)])
+    dissipation = np.array([history.energies(a, b).best for a, b in pairwise(tops)])
     start, stop = tops[-2], tops[-1]
     last = history.time >= start
-    force = history.force
     axis_gap = history.tip_height - history.axis_deformation
     return {
         "virial": virial[-1],
@@ -100,7 +101,7 @@ def observe_taps(contact: Contact, motion: Sine, history: History) -> dict[str, 
         "force_mean": history.integrate(force, np.ones_like, start, stop) / period,
         "contact_time": measure_time_below(history.time[last], axis_gap[last], contact.edge_gap),
         "indentation": max(0.0, -history.axis_deformation[last].min()),
-        "viscous_loss": history.integrate(history.viscous_power, np.ones_like, start, stop),
+        "viscous_loss": history.energies(start, stop).viscous,
     }
 
 

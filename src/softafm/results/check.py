@@ -30,7 +30,13 @@ Variables = Mapping[str, tuple[tuple[str, ...], np.ndarray, Mapping[str, Any]]]
 _LARGEST = {"degree": 360.0}
 _LARGEST_BY_DEFAULT = 1e30
 """What no quantity exceeds, in its SI unit: sums and squares of such numbers stay finite."""
-_NUMBERS = ("check_largest", "check_tolerance", "check_mean_height", *REGULARISED)
+_NUMBERS = (
+    "check_largest",
+    "check_tolerance",
+    "check_mean_height",
+    "regularised_error",
+    *REGULARISED,
+)
 _TEXTS = ("warnings", "softafm_version", "created")
 
 
@@ -91,9 +97,9 @@ def _refuse_attributes(needed: Needed, attributes: Mapping[str, Any]) -> None:
     for name in _TEXTS:
         if not isinstance(attributes.get(name, ""), str):
             raise ValueError(f"attribute {name} = {show(attributes[name])}: must be text")
-    differences = _parse_table("check_differences", attributes, "{}")
-    if not all(map(_is_number, differences.values())):
-        raise ValueError("attribute check_differences: must hold numbers by name")
+    for name in ("check_differences", "regularised_errors"):
+        if not all(map(_is_number, _parse_table(name, attributes, "{}").values())):
+            raise ValueError(f"attribute {name}: must hold numbers by name")
     if not isinstance(_parse("failures", attributes, "[]"), list):
         raise ValueError("attribute failures: must be a list, as JSON")
 

@@ -107,6 +107,7 @@ def assemble_history(
     coordinates: Mapping[str, Labelled],
     warnings: Sequence[Warning],
     diagnostics: Mapping[str, Any],
+    audit: str = "",
 ) -> "Dataset":
     """Assemble a result of variables and coordinates, by name as (dims, values).
 
@@ -117,6 +118,7 @@ def assemble_history(
         return {name: make_variable(name, dims, values) for name, (dims, values) in arrays.items()}
 
     attributes = _collect_provenance(mode, contact, parts, solver, tolerance, warnings, diagnostics)
+    attributes |= {"audit": audit} if audit else {}
     return _assemble(known(data), known(coordinates), attributes)
 
 

@@ -53,6 +53,17 @@ class CreepCompliance(NamedTuple):
             factor * self.fluidity,
         )
 
+    def without_faster(self, time: float) -> "CreepCompliance":
+        """Return the compliance with all creep faster than a time, s, taken for instantaneous."""
+        times = np.asarray(self.retardation_times, float)
+        fast = times < time
+        return CreepCompliance(
+            self.instantaneous + float(np.sum(np.asarray(self.elements, float)[fast])),
+            np.asarray(self.elements, float)[~fast],
+            times[~fast],
+            self.fluidity,
+        )
+
     def chain(self, duration: float) -> "CreepCompliance":
         """Return the compliance with elements only, for experiments up to ``duration`` (s).
 

@@ -8,9 +8,10 @@ import numpy as np
 
 from softafm.errors import AccuracyWarning
 from softafm.instrument.motion import Motion
+from softafm.solvers.energies import Energies, measure_energies
 
 _POINTS, _WEIGHTS = np.polynomial.legendre.leggauss(4)
-_MOST_UNEVEN = 4.0
+_PARTS = np.linspace(0, 1, 64)[1:-1]
 
 
 @dataclass(frozen=True)
@@ -54,7 +55,10 @@ class History:
     profiles
         ``Profiles``, the shapes of the surface, if they were asked for, else None.
     diagnostics
-        Numbers by name, such as ``steps``, which become attributes of results.
+        Numbers by name, such as ``steps``, which become attributes of results. Where there are
+        ``stored_energy_start`` and ``stored_energy_end``, J, of sample, surfaces and lever at the
+        first and the last instant, they differ by the work done less what was dissipated and
+        released.
     warnings
         The ``AccuracyWarning`` that the solver has given, a tuple.
     """
@@ -73,6 +77,9 @@ class History:
     diagnostics: dict[str, float] = field(default_factory=dict)
     warnings: tuple[AccuracyWarning, ...] = ()
     _quadratures: dict[Any, Any] = field(
+        default_factory=dict, init=False, repr=False, compare=False
+    )
+    _energies: dict[Any, Energies] = field(
         default_factory=dict, init=False, repr=False, compare=False
     )
 
@@ -95,11 +102,33 @@ class History:
             total += float(np.sum(interpolated * weight(at) * lengths))
         return total
 
+    def compare_rules(
+        self,
+        values: np.ndarray,
+        weight: Callable[[np.ndarray], Any],
+        start: float = -np.inf,
+        stop: float = np.inf,
+    ) -> tuple[float, float]:
+        """Return the integral of ``integrate``, and how far that over straight lines is from it.
+
+        Of the second one parts of positive and of negative weight count by their magnitude, as they
+        are off in opposite directions on the way down and up.
+        """
+        total, falling, rising = 0.0, 0.0, 0.0
+        for piece, at, lengths, near, basis in self._quadrature(start, stop):
+            weighted = weight(at) * lengths
+            curved = np.einsum("mpc,mc->mp", basis, values[piece][near])
+            off = (np.interp(at, self.time[piece], values[piece]) - curved) * weighted
+            total += float(np.sum(curved * weighted))
+            falling += float(off[weighted < 0].sum())
+            rising += float(off[weighted > 0].sum())
+        return total, abs(falling) + abs(rising)
+
     def _quadrature(self, start: float, stop: float) -> list[tuple[Any, ...]]:
         """Points and weights of every piece, and the cubics there: kept for the next integral."""
         from softafm.solvers.cubics import cubics
 
-        key = start, stop
+        key = max(start, self.time[0]), min(stop, self.time[-1])
         if key not in self._quadratures:
             rules = self._quadratures[key] = []
             for piece in self.pieces:
@@ -115,13 +144,19 @@ class History:
                     rules.append((piece, at, half * _WEIGHTS, near, basis))
         return self._quadratures[key]
 
+    def energies(self, start: float = -np.inf, stop: float = np.inf) -> Energies:
+        """Return the ``Energies`` between two times, s, at which the motion is met by a step."""
+        key = max(start, self.time[0]), min(stop, self.time[-1])
+        if key not in self._energies:
+            self._energies[key] = measure_energies(self, *key)
+        return self._energies[key]
+
     def extreme(
         self, values: np.ndarray, sign: int, start: float = -np.inf, stop: float = np.inf
     ) -> float:
         """Largest (``sign`` 1) or smallest (-1) of ``values`` (n,) between two times (s).
 
-        Refined by the parabola through the extreme step and its neighbours in the same piece, where
-        they are about as far away on one side as on the other.
+        Refined in the intervals on both sides of the extreme step by the cubics of ``integrate``.
         """
         best = -np.inf
         for piece in self.pieces:
@@ -130,15 +165,19 @@ class History:
             if inside.size == 0:
                 continue
             top = inside[np.argmax(height[inside])]
-            value = height[top]
+            best = max(best, height[top])
             if inside[0] < top < inside[-1]:
-                (x0, x1), (y0, y1) = (
-                    time[top - 1 : top + 2 : 2] - time[top],
-                    height[top - 1 : top + 2 : 2] - value,
-                )
-                curvature = (y1 / x1 - y0 / x0) / (x1 - x0)
-                slope = y0 / x0 - curvature * x0
-                if curvature < 0 and _MOST_UNEVEN * x1 > -x0 > x1 / _MOST_UNEVEN:
-                    value -= slope**2 / (4 * curvature)
-            best = max(best, value)
+                best = max(best, _find_summit(time, height, top))
         return sign * float(best)
+
+
+def _find_summit(time: np.ndarray, height: np.ndarray, top: int) -> float:
+    """Largest height (n,) that the local cubics have within an interval of the step ``top``."""
+    from softafm.solvers.cubics import cubics
+
+    starts, ends = time[top - 1 : top + 1, None], time[top : top + 2, None]
+    at = starts + (ends - starts) * _PARTS
+    near = np.empty((2, min(4, time.size)), int)
+    basis = np.empty((*at.shape, near.shape[1]))
+    cubics(time, at, near, basis)
+    return float(np.einsum("mpc,mc->mp", basis, height[near]).max())

@@ -1,11 +1,11 @@
 """Frames of the energy solver: fields moved between meshes, and the ride on the contact edge."""
 
-from math import asinh, exp, floor, log, sqrt
+from math import asinh, exp, floor, hypot, log, sqrt
 
 import numpy as np
 from numba import float64
 
-from softafm.compiled.functions import compile_for
+from softafm.compiled.functions import compile_for, inline
 from softafm.solvers.energy.layout import (
     CLOCK,
     CONSTANT_VECTOR,
@@ -130,12 +130,39 @@ def choose_frame(edge, open_frame):
     return max(edge, open_frame - OPENING * edge)
 
 
+@compile_for(float64(float64, CLOCK))
+def foresee_frame(step, clock):
+    """Frame radius where the edge will be after a step that rides with it."""
+    history, edge = int(clock.history), clock.edge
+    if clock.rides < history:
+        ahead = (edge - clock.edge_earlier) * step / clock.taken
+        return edge + min(max(ahead, -FARTHEST_RIDE * edge), FARTHEST_RIDE * edge)
+    before, earliest = clock.frame_earlier, clock.frame_earliest
+    frame = clock.frame
+    if history > 1:
+        frame += step * (clock.frame - before) / clock.taken
+    if history > 2:
+        bend = (clock.frame - before) / clock.taken - (before - earliest) / clock.taken_earlier
+        frame += step * (step + clock.taken) * bend / (clock.taken + clock.taken_earlier)
+    return min(max(frame, (1.0 - FARTHEST_RIDE) * edge), (1.0 + FARTHEST_RIDE) * edge)
+
+
+@inline
+def find_spacing(radius, frame, mesh):
+    """Distance of the nodes at a radius, m: that of the map j(ξ) of the mesh."""
+    inner = hypot(mesh.edge_spacing, mesh.growth * (radius / frame - 1.0))
+    outer = hypot(mesh.edge_spacing, mesh.growth * (radius / frame + 1.0))
+    return frame * inner * outer / (inner + outer)
+
+
 @compile_for(float64(float64, CLOCK, MESH, CONTROLS))
 def follow_edge(step, clock, mesh, controls):
     """Frame radius for the next step, which rides along with the edge.
 
     It moves as far as the edge will, and makes up for what it lags while the edge passes the
-    nodes; it stands still while the edge hardly moves, so that short steps see the same mesh.
+    nodes; it stands still while the edge hardly moves, so that short steps see the same mesh, and
+    where nodes farther in resolve a receding edge: the memory keeps the old rim, sharp, and a
+    surface that parts everywhere at once has an edge that runs without meaning.
     """
     frame, edge = clock.frame, clock.edge
     if clock.history < 2:
@@ -144,6 +171,10 @@ def follow_edge(step, clock, mesh, controls):
     ahead = min(max(ahead, -FARTHEST_RIDE * edge), FARTHEST_RIDE * edge)
     suited = choose_frame(edge, controls.open_frame)
     node = mesh.edge_spacing * frame
+    if edge > 0.0 and edge + ahead < frame:
+        spacing = find_spacing(max(edge + ahead, 0.0), frame, mesh)
+        if spacing < controls.held * clock.zone:
+            return frame
     if abs(ahead) < AT_REST * node and abs(suited - frame) < controls.slack * node:
         return frame
     pace = min(1.0, abs(ahead) / (controls.slack * node))

@@ -9,7 +9,7 @@ a change of frame is an interpolation of smooth fields.
 from typing import NamedTuple
 
 import numpy as np
-from numba import float64, from_dtype, types
+from numba import float64, from_dtype, int64, types
 
 from softafm.bodies.mesh import UnitMesh
 from softafm.compiled.functions import CompiledFunction
@@ -22,8 +22,8 @@ CONSTANT_MATRIX = types.Array(float64, 2, "C", readonly=True)
 # Why `advance` came back.
 FINISHED, FULL, REMESH, FALL, STUCK, TRIGGERED, TABULATE = range(7)
 
-# Rows of `fields`: the last three shapes, the load q before and now, then one per element y_m.
-DEFORMATION, EARLIER, EARLIEST, LOAD_EARLIER, LOAD, MEMORY = range(6)
+# Rows of `fields`: the last three shapes, the last three loads q, then one per element y_m.
+DEFORMATION, EARLIER, EARLIEST, LOAD_EARLIEST, LOAD_EARLIER, LOAD, MEMORY = range(7)
 
 # Entry of the law's parameters: where its gaps are counted from. The solver's gaps are above it.
 ORIGIN = 0
@@ -40,9 +40,11 @@ CLOCK_FIELDS = record(
     "taken", "taken_earlier",  # the last two steps, s
     "frame", "frame_earlier", "frame_earliest",  # radii of the frames of the last three shapes, m
     "edge", "edge_earlier",  # radius of the contact edge, m
+    "widest",  # the largest of these so far, m, in steady cycles of the last cycle
+    "zone",  # width of the cohesive zone at the edge, m, 0 out of contact
     "axis_gap",  # gap on the axis, m
     "force", "force_earlier", "force_earliest",  # N
-    "force_scale",  # the largest force so far, N
+    "force_scale",  # the largest attraction so far, or a force to be felt, N
     "deflection", "deflection_earlier", "deflection_earliest",  # of the lever, m
     "history",  # number of past shapes fit for extrapolation
     "tries",  # attempted steps so far
@@ -51,6 +53,9 @@ CLOCK_FIELDS = record(
     # How large a second correction of Newton's was for the square of the first; 0 if that is not
     # known, inf if it is no guide.
     "contraction",
+    "rides",  # number of past shapes that Newton's method rode with: frame and edge are one
+    "found",  # radius of the frame that it found, m
+    "stability",  # s of the last shape found so: positive if it is stable, 0 at the fold
 )  # fmt: skip
 """State of a run besides its fields."""
 
@@ -131,6 +136,9 @@ class Background(NamedTuple):
 
     ``values`` (elements, nodes), or none, live on a mesh of this edge spacing and growth that ends
     at ``end`` in a frame of radius ``frame``, m, and fall by the ``decay`` of the body beyond.
+    On the ``nodes`` of that mesh the memory since then is gathered, too, as it is on the mesh that
+    rides: the rows of ``gained`` (elements + 10, nodes), if there are values, are the load before
+    and now, one y_m for each element, and 8 to work in.
     """
 
     values: np.ndarray
@@ -140,16 +148,21 @@ class Background(NamedTuple):
     growth: float
     decay: float
     since: float
+    nodes: np.ndarray
+    gained: np.ndarray
 
 
 class Controls(NamedTuple):
     """What steers ``advance``: times s, lengths m, speed m/s, the rest dimensionless.
 
     ``prediction``, ``memory`` and ``force`` are the errors allowed per step, ``newton`` that of an
-    equilibrium; all relative to the gap, but ``force`` to the largest force so far.
-    ``slack`` is how far the edge moves, in edge spacings, while the frame catches up with it.
+    equilibrium; all relative to the gap, but ``force`` to the force itself, or where that is less
+    to the largest attraction so far.
+    ``slack`` is how far the edge moves, in edge spacings, while the frame catches up with it; the
+    frame stays behind an edge where it is that its nodes lie closer than ``held`` times the zone.
     Remeshing is asked for when the coarseness of a record leaves ``finest`` to ``coarsest``.
-    The step in which the force reaches ``trigger``, N, is the last.
+    The step in which the force reaches ``trigger``, N, is the last. A contact whose edge is beyond
+    ``ride_from``, m, is solved together with its edge.
     """
 
     end: float
@@ -164,25 +177,34 @@ class Controls(NamedTuple):
     force: float
     newton: float
     slack: float
+    held: float
     finest: float
     coarsest: float
     most_tries: float
     trigger: float
+    ride_from: float
+    trace_from: float
 
 
 class Room(NamedTuple):
     """Memory for the compiled loops to work in, for n nodes, f radii beyond and m elements."""
 
     rows: np.ndarray
-    """(12, n + 1)."""
+    """(16, n + 1)."""
     fields: np.ndarray
-    """(10 + 4m, n)."""
+    """(10 + 5m, n)."""
     hessian: np.ndarray
     """(n + 1, n + 1)."""
     far: np.ndarray
     """(4, f)."""
     weights: np.ndarray
     """(m + 1, 5)."""
+    gain: np.ndarray
+    """(n, n)."""
+    system: np.ndarray
+    """(n + 2, n + 2)."""
+    change: np.ndarray
+    """(1, n + 2)."""
 
 
 MESH = types.NamedTuple(
@@ -194,11 +216,19 @@ MESH = types.NamedTuple(
 )  # fmt: skip
 PARAMETERS = types.NamedUniTuple(VECTOR, len(Parameters._fields), Parameters)
 TABLE = types.NamedTuple((float64[:, :, ::1], float64, float64, MATRIX), Table)
-BACKGROUND = types.NamedTuple((MATRIX, *[float64] * 6), Background)
+BACKGROUND = types.NamedTuple((MATRIX, *[float64] * 6, CONSTANT_VECTOR, MATRIX), Background)
 CONTROLS = types.NamedUniTuple(float64, len(Controls._fields), Controls)
 CLOCK = from_dtype(CLOCK_FIELDS)
+PIVOTS = int64[::1]
 ROOM = types.NamedUniTuple(MATRIX, len(Room._fields), Room)
 RECORDS = types.Array(from_dtype(RECORD_FIELDS), 1, "C")
+
+
+def no_background() -> Background:
+    """Return the background of a surface that has no past."""
+    nodes = np.empty(0)
+    nodes.setflags(write=False)
+    return Background(np.empty((0, 0)), 1.0, 1.0, 1.0, 1.0, 0.0, 0.0, nodes, np.empty((0, 0)))
 
 
 def new_clock() -> np.void:
@@ -209,9 +239,12 @@ def new_clock() -> np.void:
 def new_room(nodes: int, far: int, elements: int) -> Room:
     """Return room for a mesh and a number of elements."""
     return Room(
-        np.empty((12, nodes + 1)),
-        np.empty((10 + 4 * elements, nodes)),
+        np.empty((16, nodes + 1)),
+        np.empty((10 + 5 * elements, nodes)),
         np.empty((nodes + 1, nodes + 1)),
         np.empty((4, far)),
         np.empty((elements + 1, 5)),
+        np.empty((nodes, nodes)),
+        np.empty((nodes + 2, nodes + 2)),
+        np.empty((1, nodes + 2)),
     )

@@ -4,6 +4,7 @@ from math import exp, pi
 
 from numba import float64, int64
 
+from softafm.compiled.dense import multiply_rows
 from softafm.compiled.functions import compile_for, inline
 from softafm.solvers.energy.frame import transfer
 from softafm.solvers.energy.layout import BACKGROUND, CONSTANT_VECTOR, MATRIX, VECTOR
@@ -75,12 +76,37 @@ def recall(background, time, frame, retardation, nodes, work, memory):
 
 
 @inline
-def displace_by_memory(compliance, weights, load_earlier, load, memory, old, v):
+def gather(background, weights, load, mesh, frame):
+    """Carry the memory that a background gathers over a step to a ``load`` (1, n) of a frame."""
+    elements, n = background.values.shape
+    if elements > 0:
+        gained = background.gained
+        new = gained[elements + 2]
+        transfer(
+            load, mesh.nodes[mesh.nodes.size - 1], mesh.edge_spacing, mesh.growth,
+            frame * mesh.decay, background.frame / frame, background.nodes,
+            gained[elements + 3 :], gained[elements + 2 : elements + 3],
+        )  # fmt: skip
+        for m in range(elements):
+            for i in range(n):
+                gained[2 + m, i] = (
+                    weights[m, DECAY] * gained[2 + m, i]
+                    + weights[m, EARLIER] * gained[0, i]
+                    + weights[m, NOW] * gained[1, i]
+                    + weights[m, NEW] * new[i]
+                )
+        for i in range(n):
+            gained[0, i], gained[1, i] = gained[1, i], new[i]
+
+
+@inline
+def displace_by_memory(compliance, weights, load_earlier, load, memory, old, lags, v):
     """Carry the memory over a step as far as it is known; return the compliance of the step.
 
     The step is an elastic contact of that compliance on a surface displaced by ``v``, which is
     overwritten, as is ``memory`` (elements, n) of the instant before; ``old`` is that of the
-    background at the end of the step. The part of the new load is left out.
+    background at the end of the step. The part of the new load is left out. ``lags`` (elements, n)
+    gets what the step leaves of the lags q − y_m.
     """
     elements, n = memory.shape
     total = compliance[0]
@@ -89,6 +115,7 @@ def displace_by_memory(compliance, weights, load_earlier, load, memory, old, v):
     for m in range(elements):
         total += compliance[m + 1] * weights[m, NEW]
         for i in range(n):
+            lags[m, i] = weights[m, DECAY] * (load[i] - memory[m, i]) - old[m, i]
             memory[m, i] = (
                 weights[m, DECAY] * memory[m, i]
                 + weights[m, EARLIER] * load_earlier[i]
@@ -99,13 +126,36 @@ def displace_by_memory(compliance, weights, load_earlier, load, memory, old, v):
 
 
 @inline
-def dissipated_power(frame, compliance, retardation, lags, strained):
-    """Power that the dashpots of all elements take, W, by the lags q − y_m and S times them."""
+def carry_lag_energy(frame, anew, weights, left, lags, strained, stiffness, energies):
+    """Carry ``energies`` L_m = ½⟨e_m, K⁻¹ e_m⟩ of the lags e_m = q − y_m, Pa² m³, over a step.
+
+    With what the step ``left`` of the old lags, ε e with ε = e^(−dt/τ_m), and d = e⁺ − ε e,
+
+        L⁺ = ε² L + ⟨½ (e⁺ + ε e), K⁻¹ d⟩,
+
+    where K⁻¹ d is smooth at the old rims in e, which may lie on coarse nodes. ``anew`` sums up e⁺
+    itself, which serves as long as it has no rim but the edge. ``lags`` (elements, n), those at the
+    end, and ``left`` are overwritten.
+    """
     elements, n = lags.shape
-    power = 0.0
+    for m in range(elements):
+        for i in range(n):
+            end, start = lags[m, i], 0.0 if anew else left[m, i]
+            lags[m, i], left[m, i] = end - start, 0.5 * (end + start)
+    multiply_rows(lags, stiffness, strained)
     for m in range(elements):
         product = 0.0
         for i in range(n):
-            product += lags[m, i] * strained[m, i]
-        power += 2.0 * pi * frame * compliance[m + 1] / retardation[m] * product
+            product += left[m, i] * strained[m, i]
+        kept = 0.0 if anew else weights[m, DECAY] * weights[m, DECAY] * energies[m]
+        # Where a lag has all but died away, what rounding leaves may be below zero.
+        energies[m] = max(kept + frame * product, 0.0)
+
+
+@inline
+def dissipated_power(compliance, retardation, energies):
+    """Power that the dashpots of all elements take, W, by the energies of their lags."""
+    power = 0.0
+    for m in range(energies.size):
+        power += 4.0 * pi * compliance[m + 1] / retardation[m] * energies[m]
     return power

@@ -38,9 +38,10 @@ class Work(NamedTuple):
     """Views of a ``Room``: what a step works in, for n nodes, f radii beyond and m elements.
 
     ``memory`` (m, n) is that of the run, at first without the part of the new load; ``old`` that of
-    the background. ``past`` (m + 1, n) holds load and memory of the instant before. Of ``u``
+    the background. ``past`` (m + 1, n) holds load and memory of the instant before, ``left`` (m, n)
+    what the step leaves of their lags. Of ``u``
     (n + 1,) the last is the deflection of the lever. The rows of ``newton`` (4, n + 1) are gap,
-    pressure, slope, and a change of u.
+    pressure, slope, and a change of u; ``riding`` (5, n + 1) is the work of ``ride``.
     """
 
     u: np.ndarray
@@ -51,11 +52,13 @@ class Work(NamedTuple):
     load_new: np.ndarray
     scratch: np.ndarray
     newton: np.ndarray
+    riding: np.ndarray
     shape: np.ndarray
     load_earlier: np.ndarray
     shifting: np.ndarray
     past: np.ndarray
     old: np.ndarray
+    left: np.ndarray
     lags: np.ndarray
     strained: np.ndarray
     hessian: np.ndarray
@@ -66,7 +69,10 @@ class Work(NamedTuple):
 
 
 class Trial(NamedTuple):
-    """A step that is tried: s, m, 1/Pa; lever and rest as ``equilibrate`` takes them."""
+    """A step that is tried: s, m, 1/Pa; lever and rest as ``equilibrate`` takes them.
+
+    ``rides`` is 1 if surface and edge are solved for together, else 0.
+    """
 
     step: float
     frame: float
@@ -76,6 +82,7 @@ class Trial(NamedTuple):
     lever: float
     rest: float
     history: int
+    rides: int
 
 
 @inline
@@ -84,8 +91,9 @@ def furnish(room):
     rows, fields, n, m = room.rows, room.fields, room.fields.shape[1], room.weights.shape[0] - 1
     return Work(
         rows[0], rows[1, :n], rows[2, :n], rows[3, :n], rows[4, :n], rows[5, :n], rows[6, :n],
-        rows[7:11], fields[0:1], fields[1:2], fields[2:9], fields[9 : 10 + m],
-        fields[10 + m : 10 + 2 * m], fields[10 + 2 * m : 10 + 3 * m], fields[10 + 3 * m :],
+        rows[7:11], rows[11:16], fields[0:1], fields[1:2], fields[2:9], fields[9 : 10 + m],
+        fields[10 + m : 10 + 2 * m], fields[10 + 2 * m : 10 + 3 * m],
+        fields[10 + 3 * m : 10 + 4 * m], fields[10 + 4 * m :],
         room.hessian, room.far[0], room.far[1:], room.weights[:m], room.weights[m],
     )  # fmt: skip
 
@@ -117,10 +125,13 @@ def find_extrapolation_weights(history, step, last, before, weights):
 
 @compile_for((float64, float64, int64, MATRIX, CLOCK, MESH, VECTOR, VECTOR, MATRIX, MATRIX))
 def predict(frame, step, history, fields, clock, mesh, weights, guess, work, shape):
-    """Extrapolate the last ``history`` shapes to the new frame, as seen riding on the edge."""
+    """Extrapolate the last ``history`` shapes to the new frame, as seen riding on the edge.
+
+    From a frame that stays behind a receding edge they are seen at rest.
+    """
     n = mesh.nodes.size
     speed = 0.0
-    if history > 1:
+    if history > 1 and not (frame == clock.frame and clock.edge < clock.edge_earlier):
         speed = (clock.edge - clock.edge_earlier) / clock.taken
     frames = (clock.frame, clock.frame_earlier, clock.frame_earliest)
     ago = (step, step + clock.taken, step + clock.taken + clock.taken_earlier)
@@ -135,16 +146,17 @@ def predict(frame, step, history, fields, clock, mesh, weights, guess, work, sha
 
 
 @inline
-def propose(
-    step, frame, height, profile, respond, parameters, background, mesh, fields, clock,
-    lever_state, work,
+def carry_past(
+    step, frame, height, profile, parameters, background, mesh, fields, clock, work
 ):  # fmt: skip
-    """Move the past to the frame of a step, and guess the shape at its end: ``work.u``."""
+    """Move tip, load and memory to a frame, the memory to the end of a step as far as known.
+
+    Returns the height of the unbent lever's tip and the compliance of the step.
+    """
     n, elements = mesh.nodes.size, parameters.retardation.size
-    history = int(clock.history)
     stretch = frame / clock.frame
     reframe(fields[LOAD : MEMORY + elements], mesh, clock.frame, stretch, work.shifting, work.past)
-    order = min(history, 2)
+    order = min(int(clock.history), 2)
     if order == 2:
         earlier = frame / clock.frame_earlier
         reframe(
@@ -161,18 +173,37 @@ def propose(
     recall(background, time, frame, parameters.retardation, mesh.nodes, work.shifting, work.old)
     compliance = displace_by_memory(
         parameters.compliance, work.weights, work.load_earlier[0], work.past[0], work.past[1:],
-        work.old, work.v,
+        work.old, work.left, work.v,
     )  # fmt: skip
     raise_tip(profile, parameters.tip, mesh, frame, work.scratch, work.tip, work.rise)
     h0 = height(time, parameters.height)
     for i in range(n):
         work.standoff[i] = h0 - parameters.law[ORIGIN] + work.tip[i]
+    return h0, compliance
 
+
+@inline
+def propose(
+    step, frame, rides, height, profile, respond, parameters, background, mesh, fields, clock,
+    lever_state, work,
+):  # fmt: skip
+    """Move the past to the frame of a step, and guess the shape at its end: ``work.u``."""
+    n, history = mesh.nodes.size, int(clock.history)
+    h0, compliance = carry_past(
+        step, frame, height, profile, parameters, background, mesh, fields, clock, work
+    )
     find_extrapolation_weights(history, step, clock.taken, clock.taken_earlier, work.past_weights)
-    predict(
-        frame, step, history, fields, clock, mesh, work.past_weights, work.guess, work.shifting,
-        work.shape,
-    )  # fmt: skip
+    if rides > 0 and clock.rides >= history:
+        for i in range(n):
+            work.guess[i] = 0.0
+        for k in range(history):
+            for i in range(n):
+                work.guess[i] += work.past_weights[k] * fields[DEFORMATION + k, i]
+    else:
+        predict(
+            frame, step, history, fields, clock, mesh, work.past_weights, work.guess,
+            work.shifting, work.shape,
+        )  # fmt: skip
     past = clock.deflection, clock.deflection_earlier, clock.deflection_earliest
     deflection = 0.0
     for k in range(history):
@@ -181,7 +212,7 @@ def propose(
         work.u[i] = work.guess[i]
     work.u[n] = deflection
     rest, stiffness = respond(
-        time, step, clock.deflection, clock.force, parameters.lever, lever_state
+        clock.time + step, step, clock.deflection, clock.force, parameters.lever, lever_state
     )
     lever = spring_constant(stiffness, frame)
-    return Trial(step, frame, h0, compliance, deflection, lever, rest, history)
+    return Trial(step, frame, h0, compliance, deflection, lever, rest, history, rides)

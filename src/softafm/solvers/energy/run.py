@@ -10,7 +10,8 @@ from softafm.errors import DivergedError
 from softafm.instrument.lever import Lever
 from softafm.instrument.motion import Motion, Turning, bound_speed, count_periods, find_setpoint
 from softafm.solvers.energy.doubts import list_doubts, suggest_longer_range
-from softafm.solvers.energy.fall import creep_down
+from softafm.solvers.energy.fall import creep_down, is_jump
+from softafm.solvers.energy.landing import land
 from softafm.solvers.energy.layout import (
     DEFORMATION,
     FALL,
@@ -29,14 +30,14 @@ from softafm.solvers.energy.tuning import (
     AFTER_A_BREAK,
     FEWEST_STEPS,
     FINEST_TARGET,
+    FIRST_PART_OF_GAP,
     FIRST_STEP,
     FORCE_ERROR,
-    JUMP_OF_EDGE,
-    JUMP_OF_GAP,
     LAG,
     MEMORY_ERROR,
     MOST_CYCLES,
     PREDICTION_ERROR,
+    SHORTER,
     SHORTEST_STEP,
     SLIPS_AGAIN,
     STAGNANT,
@@ -68,9 +69,12 @@ class Run:
         self.surface = Surface(contact, motion, lever, self.strictness, solver.finest_spacing)
         gap = self.surface.edge_gap
         fastest = min([gap / motion.top_speed, *self.surface.parameters.retardation])
+        shortest = SHORTEST_STEP
+        if self.surface.trace_from < np.inf:
+            shortest *= SHORTER
         self.controls = Controls(
             end=0.0,
-            shortest_step=SHORTEST_STEP * self.strictness * fastest,
+            shortest_step=shortest * self.strictness * fastest,
             longest_step=0.0,
             top_speed=motion.top_speed,
             open_frame=self.surface.open_frame,
@@ -81,10 +85,13 @@ class Run:
             force=FORCE_ERROR * self.strictness,
             newton=self.surface.accuracy,
             slack=LAG,
+            held=0.0,
             finest=0.0,
             coarsest=0.0,
             most_tries=float(solver.most_steps),
             trigger=np.inf,
+            ride_from=self.surface.ride_from,
+            trace_from=self.surface.trace_from,
         )
         self.target = self.surface.target
         self.records, self.count = np.empty(2 * _CHUNK, RECORD_FIELDS), 0
@@ -95,11 +102,17 @@ class Run:
         # How well a memory can be found is limited by the errors of a cycle.
         self.steadiness = STEADY * self.strictness**0.5
         self.falls: list[float] = []
+        self.jumps: list[float] = []
+        self.gained = 0.0
+        self.stored = 0.0, 0.0
 
     def steps(self) -> Iterator[float]:
         """Run, yielding the fraction of the motion done at every return of the compiled loop."""
         surface = self.surface
         self._settle()
+        if surface.clock["edge"] > 0 and self.cycle == 1:
+            self._fall_at_start()
+        self.stored = surface.stored_energy(), 0.0
         trigger = self._trigger(-np.inf)
         if surface.clock["force"] >= trigger:
             raise ValueError(
@@ -134,9 +147,10 @@ class Run:
                 if outcome == TRIGGERED:
                     self._turn()
                 yield (surface.time - first) / (self.breaks[-1] - first)
+        self.stored = self.stored[0], surface.stored_energy()
 
     def cycles(self) -> Iterator[float]:
-        """Run the motion over and over, until the memory ends a cycle as it began it.
+        """Run the motion over and over, until surface and memory end a cycle as they began it.
 
         Only the last cycle is kept. Yields as ``steps``.
         """
@@ -150,15 +164,19 @@ class Run:
         for self.cycle in range(1, MOST_CYCLES + 1):
             self.count = 0
             self.falls.clear()
+            self.jumps.clear()
+            self.gained = 0.0
             if self.shapes is not None:
                 self.shapes.clear()
             yield from self.steps()
+            surface.clock["widest"] = self.records[: self.count]["edge"].max()
             gained = surface.rewind(start)
             memory = np.zeros_like(gained) if memory is None else memory
             memory, off = periodic.next_start(memory, gained)
             self.unsteady = off / surface.edge_gap
             misses.append(self.unsteady)
-            if self.unsteady <= self.steadiness or _stagnates(misses):
+            caught = surface.clock["edge"] > 0 and self.records[0]["edge"] == 0
+            if not caught and (self.unsteady <= self.steadiness or _stagnates(misses)):
                 self.unsteady = max(self.unsteady, _scatter(misses))
                 return
             surface.remember(memory)
@@ -196,19 +214,28 @@ class Run:
         """Forget the past shapes: beyond a break of the motion they do not extrapolate."""
         clock = self.surface.clock
         clock["history"] = 1
+        clock["rides"] = min(clock["rides"], 1.0)
         clock["step"] = AFTER_A_BREAK * clock["taken"] or FIRST_STEP * (stop - self.surface.time)
+        speed = self._top_speed(stop)
+        if clock["edge"] > 0 and speed > 0:
+            # A first step has no past to tell the errors of its memory by.
+            part = FIRST_PART_OF_GAP * self.strictness**0.5
+            clock["step"] = min(clock["step"], part * self.surface.edge_gap / speed)
 
     def _advance(self, stop: float) -> tuple[int, np.ndarray, np.ndarray]:
         """Call the compiled loop once; return its outcome, records and shapes."""
         surface = self.surface
         finest, coarsest = surface.coarseness_allowed
-        controls = self.controls._replace(end=float(stop), finest=finest, coarsest=coarsest)
+        controls = self.controls._replace(
+            end=float(stop), finest=finest, coarsest=coarsest, held=surface.spacing_held
+        )
         records = self._free_records()
         shapes = np.empty((0 if self.shapes is None else _CHUNK, surface.mesh.nodes.size))
         outcome, count = advance(
             *surface.functions[:-1], surface.parameters, surface.background, surface.mesh,
-            surface.table, controls, surface.fields, surface.clock, surface.lever_state, records,
-            shapes, surface.room(),
+            surface.table, controls, surface.fields, surface.clock, surface.lever_state,
+            surface.lag_energy, records, shapes, surface.room(),
+            np.empty(surface.mesh.nodes.size + 2, np.int64),
         )  # fmt: skip
         if outcome == TABULATE:
             surface.tabulate(float(surface.clock["wanted"]))
@@ -225,9 +252,23 @@ class Run:
 
     def _settle(self) -> None:
         """Equilibrate at frozen memory, and keep a record of it."""
+        self._note(self.surface.settle())
+
+    def _note(self, record: tuple[float, ...]) -> None:
+        """Keep a record of the surface as it is."""
         records = self._free_records()[:1]
-        records[0] = self.surface.settle()
+        records[0] = record
         self._keep(records, self.surface.fields[DEFORMATION][None])
+
+    def _fall_at_start(self) -> None:
+        """Let a surface that is drawn into contact at once come to rest on a mesh that suits it."""
+        surface, start = self.surface, self.surface.time
+        creep_down(self, start, self.controls.shortest_step)
+        surface.clock["time"] = start
+        self.count = 0
+        if self.shapes is not None:
+            self.shapes.clear()
+        self._settle()
 
     def _fall(self, stop: float) -> None:
         """Pass a short step where no stable shape is near, and note a jump if it is one."""
@@ -239,21 +280,30 @@ class Run:
         duration = min(2.0**self.slips * self.controls.shortest_step, stop - start)
         end = stop if duration == stop - start else start + duration
         self.end_of_slip = start + SLIPS_AGAIN * duration
-        creep_down(self, end, duration)
+        touching = edge > 0
+        record = land(surface, end, before, touching) if self.contact.adhesive else None
+        if record is None:
+            creep_down(self, end, duration)
         surface.functions.accept_force(
             end, duration, force, force, surface.parameters.lever, surface.lever_state
         )
         clock["time"], clock["step"] = end, 10 * self.controls.shortest_step
-        self._settle()
+        self._settle() if record is None else self._note(record)
         self.falls.append(surface.time)
-        if (
-            abs(clock["axis_gap"] - gap) > JUMP_OF_GAP * gap
-            or abs(clock["edge"] - edge) > JUMP_OF_EDGE * edge
-        ):
-            self.records[self.count - 1]["jump"] = before - surface.energy()
+        if is_jump(clock, gap, edge):
+            self._note_jump(before - surface.energy())
         else:
             # No fall but a slip: the edge is caught by nodes too far apart for a contact so slack.
             surface.target = max(surface.target / 2, FINEST_TARGET)
+
+    def _note_jump(self, released: float) -> None:
+        """Note a jump to the state just kept, by the energy that it ``released``, J.
+
+        A fall cannot gain energy: what it seems to is an error of the two shapes.
+        """
+        self.jumps.append(self.surface.time)
+        self.records[self.count - 1]["jump"] = max(released, 0.0)
+        self.gained -= min(released, 0.0)
 
     def _keep(self, records: np.ndarray, shapes: np.ndarray) -> None:
         """Keep the records just filled, shapes, and the worst coarseness of the finest mesh."""
@@ -271,7 +321,8 @@ class Run:
         """Collect what was recorded; ``seconds`` is the time the run took."""
         surface = self.surface
         records = self.records[: self.count]
-        time, jumped = records["time"], records["jump"] != 0
+        time = records["time"]
+        jumped = np.isin(time, self.jumps)
         breaks = np.flatnonzero(np.isin(time, self.breaks[1:-1]))
         fallen = np.flatnonzero(np.isin(time, self.falls))
         cuts = sorted([(i, i + 1) for i in breaks] + [(i, i) for i in fallen])
@@ -298,6 +349,8 @@ class Run:
                 "finest_spacing": surface.finest_spacing,
                 "growth": surface.growth,
                 "cycles": max(self.cycle, count_periods(self.motion)),
+                "stored_energy_start": self.stored[0],
+                "stored_energy_end": self.stored[1],
                 "wall_time": seconds,
             },
             warnings=list_doubts(self),

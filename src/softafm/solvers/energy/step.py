@@ -4,9 +4,11 @@ An implicit predictor-corrector method. The predictor extrapolates shape and for
 an equilibrium, and their difference, with the error of the memory, sets the length of the step.
 """
 
+from math import inf, pi
+
 from numba import float64, int64, types
 
-from softafm.compiled.dense import multiply, multiply_rows, solve_factorised
+from softafm.compiled.dense import multiply
 from softafm.compiled.functions import (
     ACCEPTANCE,
     HEIGHT,
@@ -17,8 +19,8 @@ from softafm.compiled.functions import (
     inline,
     pointer_to,
 )
-from softafm.solvers.energy.equilibrium import equilibrate, tip_force
-from softafm.solvers.energy.frame import find_radius, follow_edge
+from softafm.solvers.energy.equilibrium import tip_force
+from softafm.solvers.energy.frame import find_radius, follow_edge, foresee_frame
 from softafm.solvers.energy.layout import (
     BACKGROUND,
     CLOCK,
@@ -31,10 +33,12 @@ from softafm.solvers.energy.layout import (
     FULL,
     LOAD,
     LOAD_EARLIER,
+    LOAD_EARLIEST,
     MATRIX,
     MEMORY,
     MESH,
     PARAMETERS,
+    PIVOTS,
     RECORDS,
     REMESH,
     ROOM,
@@ -47,13 +51,25 @@ from softafm.solvers.energy.layout import (
 from softafm.solvers.energy.memory import (
     CURVATURE,
     NEW,
+    carry_lag_energy,
     dissipated_power,
+    gather,
 )  # fmt: skip
 from softafm.solvers.energy.proposal import choose_step, furnish, propose
+from softafm.solvers.energy.solution import (
+    STABLE,
+    UNKNOWN,
+    UNSTABLE,
+    find_response,
+    solve,
+    solve_riding,
+    solve_tracing,
+)
 from softafm.solvers.energy.stiffness import find_stiffness
+from softafm.solvers.energy.tracing import answer_shift
 from softafm.solvers.energy.tuning import (
+    AS_WIDE,
     AT_TRIGGER,
-    CLOSEST,
     LEAST_GROWTH,
     LEAST_RETRY,
     MOST_GROWTH,
@@ -62,32 +78,24 @@ from softafm.solvers.energy.tuning import (
     SAFETY,
 )  # fmt: skip
 
-
-@inline
-def solve(trial, law, parameters, mesh, controls, clock, work):
-    """Bring surface and lever into equilibrium, with the load; whether a stable shape was near."""
-    iterations = equilibrate(
-        work.u, work.v, trial.frame * trial.compliance, work.standoff, trial.lever, trial.rest,
-        work.rise, mesh, law, parameters.law, CLOSEST * controls.edge_gap, controls.newton,
-        clock, work.hessian, work.newton, work.far,
-    )  # fmt: skip
-    clock.newtons += abs(iterations)
-    if iterations > 0:
-        for i in range(mesh.nodes.size):
-            work.load_new[i] = (work.v[i] - work.u[i]) / trial.compliance
-    return iterations > 0
+TRACES = 2
+"""How a trial ``rides`` whose memory does, too."""
 
 
 @inline
-def judge(trial, force, parameters, mesh, controls, clock, work):
+def judge(trial, force, parameters, mesh, controls, clock, work, room, pivots):
     """Error of a solved step, in units of the one aimed at."""
     n, elements = mesh.nodes.size, parameters.retardation.size
     u, gap, history = work.u, work.newton[0], trial.history
     error = 0.0
-    for i in range(n):
-        found = u[i] - u[n] + trial.deflection
-        error = max(error, abs(found - work.guess[i]) / (controls.prediction * gap[i]))
-    if history >= 2:
+    if trial.rides > 0:
+        for i in range(n):
+            error = max(error, abs(gap[i] - work.shape[0, i]) / (controls.prediction * gap[i]))
+    else:
+        for i in range(n):
+            found = u[i] - u[n] + trial.deflection
+            error = max(error, abs(found - work.guess[i]) / (controls.prediction * gap[i]))
+    if history >= 2 and elements > 0:
         ratio = clock.taken / trial.step
         curvature = 0.0
         for m in range(elements):
@@ -95,14 +103,22 @@ def judge(trial, force, parameters, mesh, controls, clock, work):
         for i in range(n):
             bend = (work.load_new[i] + work.load_earlier[0, i] / ratio) / (1.0 + ratio)
             bend -= work.past[0, i] / ratio
-            work.scratch[i] = curvature * bend / (trial.frame * trial.compliance)
+            work.scratch[i] = curvature * bend
             # What is lost in a stiff contact stays in the memory, and comes out later.
             error = max(error, abs(curvature * bend) / (controls.memory * gap[i]))
         # What an error of the memory does to the surface now, which is much near a fold.
         miss = work.newton[3]
-        multiply(mesh.stiffness, work.scratch, miss[:n])
-        miss[n] = 0.0
-        solve_factorised(work.hessian, miss, n + 1 if trial.lever > 0.0 else n)
+        if trial.rides == TRACES:
+            bends = 1 if trial.lever > 0.0 else 0
+            answer_shift(
+                work.scratch, parameters.compliance[0], trial.frame, bends, mesh, miss, room, pivots
+            )
+            miss[n] = 0.0
+        else:
+            for i in range(n):
+                work.scratch[i] /= trial.frame * trial.compliance
+            multiply(mesh.stiffness, work.scratch, work.newton[2, :n])
+            find_response(trial, work.newton[2], mesh, work, miss)
         for i in range(n):
             error = max(error, abs(miss[i] - miss[n]) / (controls.memory * gap[i]))
     past = clock.force, clock.force_earlier, clock.force_earliest
@@ -114,7 +130,10 @@ def judge(trial, force, parameters, mesh, controls, clock, work):
 
 
 @inline
-def accept(trial, force, growth, parameters, mesh, controls, fields, clock, work, record):
+def accept(
+    trial, force, growth, parameters, background, mesh, controls, fields, clock, lag_energy, work,
+    record,
+):  # fmt: skip
     """Make a step's end the state, and write it into a record."""
     n, elements = mesh.nodes.size, parameters.retardation.size
     gap, frame, memory = work.newton[0, :n], trial.frame, work.past[1:]
@@ -123,14 +142,27 @@ def accept(trial, force, growth, parameters, mesh, controls, fields, clock, work
             memory[m, i] += work.weights[m, NEW] * work.load_new[i]
             work.lags[m, i] = work.load_new[i] - memory[m, i] - work.old[m, i]
             fields[MEMORY + m, i] = memory[m, i]
-    multiply_rows(work.lags, mesh.stiffness, work.strained)
     for i in range(n):
         fields[EARLIEST, i] = fields[EARLIER, i]
         fields[EARLIER, i] = fields[DEFORMATION, i]
         fields[DEFORMATION, i] = work.u[i]
+        fields[LOAD_EARLIEST, i] = fields[LOAD_EARLIER, i]
         fields[LOAD_EARLIER, i] = fields[LOAD, i]
         fields[LOAD, i] = work.load_new[i]
-    edge = frame * find_radius(gap, mesh.nodes, controls.edge_gap)
+    gather(background, work.weights, fields[LOAD : LOAD + 1], mesh, frame)
+    if trial.rides > 0:
+        edge = frame
+        clock.rides += 1.0
+    else:
+        edge = frame * find_radius(gap, mesh.nodes, controls.edge_gap)
+        clock.rides = 0.0
+    # A contact about as wide as ever has no old rim outside its edge; a load that was traced has
+    # left none that is sharp.
+    anew = edge >= AS_WIDE * clock.widest or trial.rides == TRACES
+    clock.widest = max(clock.widest, edge)
+    carry_lag_energy(
+        frame, anew, work.weights, work.left, work.lags, work.strained, mesh.stiffness, lag_energy
+    )
     move_clock(clock, trial.step, frame, edge, force, work.u[n])
     clock.step = max(
         trial.step * min(MOST_GROWTH, max(LEAST_GROWTH, growth)), 0.999 * controls.shortest_step
@@ -140,15 +172,28 @@ def accept(trial, force, growth, parameters, mesh, controls, fields, clock, work
 
     record.time, record.height = clock.time, trial.height + work.u[n]
     record.force, record.edge, record.axis = force, edge, work.u[0]
-    record.loss = dissipated_power(
-        frame, parameters.compliance, parameters.retardation, work.lags, work.strained
-    )
+    record.loss = dissipated_power(parameters.compliance, parameters.retardation, lag_energy)
     # The cohesive zone as it is now: where the gap opens outside the edge.
-    record.coarseness = 0.0
+    clock.zone, record.coarseness = 0.0, 0.0
     if edge > 0.0:
-        zone = frame * find_radius(gap, mesh.nodes, controls.open_gap) - edge
-        record.coarseness = frame * mesh.edge_spacing / max(zone, 1e-9 * frame)
+        clock.zone = frame * find_radius(gap, mesh.nodes, controls.open_gap) - edge
+        record.coarseness = frame * mesh.edge_spacing / max(clock.zone, 1e-9 * frame)
     record.frame, record.jump = frame, 0.0
+
+
+@inline
+def may_ride(clock, controls):
+    """Whether the next step solves for the edge too: 1 if so."""
+    known = clock.history > 1.0 or clock.rides > 0.0
+    return 1 if known and clock.edge > controls.ride_from else 0
+
+
+@inline
+def may_trace(frame, clock, mesh, controls):
+    """Whether the edge will move so far in a riding step that the memory has to ride, too."""
+    moved = abs(frame - clock.frame) / (mesh.edge_spacing * frame)
+    unknown = clock.history < 2.0 and controls.trace_from < inf
+    return clock.rides > 0.0 and (unknown or moved > controls.trace_from)
 
 
 @compile_for((CLOCK, float64, float64, float64, float64, float64))
@@ -160,28 +205,28 @@ def move_clock(clock, step, frame, edge, force, deflection):
     clock.edge_earlier, clock.taken_earlier = clock.edge, clock.taken
     clock.deflection, clock.force, clock.frame = deflection, force, frame
     clock.edge, clock.taken = edge, step
-    clock.force_scale = max(clock.force_scale, abs(force))
+    clock.force_scale = max(clock.force_scale, -force)
 
 
 @compile_for(
     types.UniTuple(int64, 2)(
         pointer_to(HEIGHT), pointer_to(PROFILE), pointer_to(PRESSURE), pointer_to(RESPONSE),
         pointer_to(ACCEPTANCE), PARAMETERS, BACKGROUND, MESH, TABLE, CONTROLS, MATRIX, CLOCK,
-        VECTOR, RECORDS, MATRIX, ROOM,
+        VECTOR, VECTOR, RECORDS, MATRIX, ROOM, PIVOTS,
     ),
 )  # fmt: skip
 def advance(
     height, profile, law, respond, accept_force, parameters, background, mesh, table, controls,
-    fields, clock, lever_state, records, shapes, room,
+    fields, clock, lever_state, lag_energy, records, shapes, room, pivots,
 ):  # fmt: skip
     """Step the surface in time until ``controls.end``, full records, a need to remesh, TABULATE: a
     frame is wanted whose stiffness the table does not reach, or FALL: no stable shape within the
     shortest step, which is not taken.
 
-    ``fields`` (MEMORY + elements, n), ``clock`` and ``lever_state`` hold the state and are updated,
-    by accepted steps only. Every accepted step
-    fills one of ``records``, and a row of ``shapes`` (the deformation) if that has rows. Returns
-    why it stopped, and the number of steps accepted. ``room`` is overwritten.
+    ``fields`` (MEMORY + elements, n), ``clock``, ``lever_state`` and ``lag_energy`` (elements,)
+    hold the state and are updated, by accepted steps only. Every accepted step fills one of
+    ``records``, and a row of ``shapes`` (the deformation) if that has rows. Returns why it stopped,
+    and the number of steps accepted. ``room`` is overwritten.
     """
     n = mesh.nodes.size
     work = furnish(room)
@@ -194,7 +239,13 @@ def advance(
         if clock.tries >= controls.most_tries:
             return STUCK, count
         step = choose_step(clock, controls, left)
-        frame = follow_edge(step, clock, mesh, controls)
+        rides = may_ride(clock, controls)
+        if rides > 0:
+            frame = foresee_frame(step, clock)
+            if parameters.retardation.size > 0 and may_trace(frame, clock, mesh, controls):
+                rides = TRACES
+        else:
+            frame = follow_edge(step, clock, mesh, controls)
         if frame != tabulated:
             if not find_stiffness(table, frame):
                 clock.wanted = frame
@@ -202,11 +253,27 @@ def advance(
             tabulated = frame
         clock.tries += 1
         trial = propose(
-            step, frame, height, profile, respond, parameters, background, mesh, fields, clock,
-            lever_state, work,
+            step, frame, rides, height, profile, respond, parameters, background, mesh, fields,
+            clock, lever_state, work,
         )  # fmt: skip
-        stable = solve(trial, law, parameters, mesh, controls, clock, work)
-        if not stable:
+        if rides == TRACES:
+            trial, found = solve_tracing(
+                trial, profile, law, parameters, background, mesh, controls, fields, clock, work,
+                room, pivots,
+            )  # fmt: skip
+            tabulated = -1.0
+        elif rides > 0:
+            trial, found = solve_riding(
+                trial, height, profile, law, parameters, background, mesh, table, controls, fields,
+                clock, work,
+            )  # fmt: skip
+            tabulated = trial.frame
+        else:
+            stable = solve(trial, law, parameters, mesh, controls, clock, work)
+            found = STABLE if stable else UNSTABLE
+        if found == UNKNOWN:
+            return TABULATE, count
+        if found == UNSTABLE:
             if step <= shortest:
                 return FALL, count
             clock.step = max(RETRIED * step, 0.999 * shortest)
@@ -215,7 +282,10 @@ def advance(
             work.newton[1, :n], work.newton[0, :n], work.rise, mesh, trial.frame, law,
             parameters.law, work.far,
         )  # fmt: skip
-        error = judge(trial, force, parameters, mesh, controls, clock, work)
+        if trial.lever > 0.0:
+            # The lever's own is the same but for what the balance misses.
+            force = 2.0 * pi * trial.frame**2 * trial.lever * (work.u[n] - trial.rest)
+        error = judge(trial, force, parameters, mesh, controls, clock, work, room, pivots)
         growth = SAFETY * max(error, 1e-6) ** (-1.0 / trial.history)
         if error > REFUSED and step > shortest:
             clock.step = max(step * max(LEAST_RETRY, growth), 0.999 * shortest)
@@ -230,7 +300,10 @@ def advance(
         clock.time = controls.end if step == left else clock.time + step
         accept_force(clock.time, step, clock.force, force, parameters.lever, lever_state)
         record = records[count]
-        accept(trial, force, growth, parameters, mesh, controls, fields, clock, work, record)
+        accept(
+            trial, force, growth, parameters, background, mesh, controls, fields, clock, lag_energy,
+            work, record,
+        )  # fmt: skip
         if shapes.shape[0] > count:
             for i in range(n):
                 shapes[count, i] = work.u[i]

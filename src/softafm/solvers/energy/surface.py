@@ -9,7 +9,7 @@ from softafm.bodies.mesh import UnitMesh, unit_mesh
 from softafm.bodies.stiffness import STEP, Stiffness
 from softafm.errors import DivergedError
 from softafm.instrument.lever import Lever
-from softafm.instrument.motion import Motion
+from softafm.instrument.motion import Motion, is_steady
 from softafm.solvers.energy.descent import descend
 from softafm.solvers.energy.equilibrium import raise_tip, tip_force
 from softafm.solvers.energy.frame import choose_frame, find_radius, transfer
@@ -26,20 +26,30 @@ from softafm.solvers.energy.layout import (
     make_mesh,
     new_clock,
     new_room,
+    no_background,
 )
 from softafm.solvers.energy.memory import recall
 from softafm.solvers.energy.stiffness import find_stiffness
 from softafm.solvers.energy.tuning import (
+    AT_ONCE,
     CLOSEST,
     COARSER_THAN_NEEDED,
     COARSEST_SPACING,
     EQUILIBRIUM_ERROR,
     EXTENT,
+    FAR_SOFTER,
     FINER_THAN_NEEDED,
     GROWTH,
+    HARDLY_SOFTER,
+    HELD,
+    HELD_IF_FAR_SOFTER,
+    RIDE_FROM,
     SLACK,
-    SLOWEST_GROWTH,
+    SLACKER,
     SPACING,
+    STEEP,
+    TOO_SLOW,
+    TRACE_FROM,
 )
 
 _POINTS, _WEIGHTS = np.polynomial.legendre.leggauss(16)
@@ -58,6 +68,9 @@ class Surface:
         self.contact = contact
         breaks = motion.breaks
         compliance = contact.body.compliance.chain(breaks[-1] - breaks[0])
+        # An edge of a slack contact is faster than the tip by about the Tabor number.
+        fastest = motion.top_speed * max(1.0, contact.tabor_softened)
+        compliance = compliance.without_faster(AT_ONCE * strictness * contact.reach / fastest)
         height, height_parameters = motion.compiled_height
         profile, tip_parameters = contact.tip.compiled_profile
         law, potential, law_parameters = contact.surface.compiled_pressure
@@ -79,13 +92,26 @@ class Surface:
         opens = 3 ** (1 / 6) * contact.reach if contact.adhesive else self.edge_gap
         self.open_gap = self.edge_gap + opens
         self.open_frame = contact.open_radius
-        self.accuracy = EQUILIBRIUM_ERROR * strictness
+        # Loose steps cost accuracy, a coarse mesh catches the edge: loops would be 15 % off.
+        at_least = min(strictness, 1.0)
+        self.accuracy = EQUILIBRIUM_ERROR * at_least
         sharpness = contact.surface.sharpness if contact.adhesive else 1.0
-        tabor = contact.tabor_instantaneous if contact.adhesive else 0.0
-        slack = max(1.0, tabor / SLACK)
-        finer = min(2.0, max(1.0, slack / 4))
-        self.target = SPACING * strictness**0.2 / max(1.0, sharpness) / finer
-        self.growth = max(SLOWEST_GROWTH, GROWTH * slack**-0.45) * min(1.0, strictness**0.17)
+        self.target = SPACING * at_least**0.2 / max(1.0, sharpness)
+        self.growth = GROWTH * min(1.0, strictness**0.17)
+        # Where the tip rises steeply, at the rim of a punch, it holds the edge; and a sample that
+        # is all memory parts evenly, without an edge.
+        free = contact.open_width > STEEP * self.open_frame
+        free = free and find_softening(self.parameters, breaks[-1] - breaks[0]) < FAR_SOFTER
+        tabor = contact.tabor_after(breaks[-1] - breaks[0]) if contact.adhesive else 0.0
+        slack = free and tabor > SLACK
+        self.ride_from = RIDE_FROM * self.open_frame if slack else inf
+        # What a steady cycle gathers is filtered at fixed radii.
+        traced = free and tabor > SLACKER and not is_steady(motion)
+        self.trace_from = TRACE_FROM if traced else inf
+        period = float(breaks[-1] - breaks[0])
+        self.too_slow = TOO_SLOW[1 if is_steady(motion) else 0] * period
+        duration = inf if is_steady(motion) else period
+        self.held = choose_spacing_held(self.parameters, duration)
         self.finest_level = max(0, ceil(log2(COARSEST_SPACING / finest_spacing)))
         self.level = self.first_level = self._find_level(0.4 * contact.open_width / self.open_frame)
         self._lay(self._build_mesh(self.level))
@@ -95,12 +121,14 @@ class Surface:
         elements = self.parameters.retardation.size
         self._rooms: dict[tuple[int, int, int], Room] = {}
         self.fields = np.zeros((MEMORY + elements, self.mesh.nodes.size))
+        self.lag_energy = np.zeros(elements)
         self.clock = new_clock()
         self.clock["time"] = breaks[0]
-        self.clock["contraction"] = 0.0 if slack < 2 else np.inf
-        first = contact.contact_radius(float(motion.height(breaks[0])))
+        self.clock["contraction"] = 0.0 if contact.tabor_instantaneous < SLACK else np.inf
+        # The flat relaxed surface answers the first instant with its short-term modulus.
+        first = contact.contact_radius_instantaneous(float(motion.height(breaks[0])))
         self.clock["frame"] = choose_frame(first, self.open_frame)
-        self.background = Background(np.empty((0, 0)), 1.0, 1.0, 1.0, 1.0, 0.0, 0.0)
+        self.background = no_background()
         self.clock["force_scale"] = contact.force_scale
 
     def _build_mesh(self, level: int) -> UnitMesh:
@@ -157,6 +185,11 @@ class Surface:
         return self._rooms[size]
 
     @property
+    def spacing_held(self) -> float:
+        """Spacing of the nodes under a receding edge, in zones, up to which the frame stays."""
+        return self.held * self.target
+
+    @property
     def coarseness_allowed(self) -> tuple[float, float]:
         """Bounds of the coarseness within which the mesh is kept."""
         finest = FINER_THAN_NEEDED * self.target if self.level > 0 else 0.0
@@ -178,17 +211,43 @@ class Surface:
         self.finest_spacing = min(self.finest_spacing, self.mesh.edge_spacing)
         self.finest_used = max(self.finest_used, self.level)
 
+    def open(self) -> None:
+        """Let the surface be as its memory has it, in the frame of a contact yet to come."""
+        self.level = self.first_level
+        mesh, stretch = self._build_mesh(self.level), self.open_frame / self.clock["frame"]
+        self.fields = self._carry(self.fields, mesh, stretch)
+        self._lay(mesh)
+        self.clock["frame"], self.clock["deflection"] = self.open_frame, 0.0
+        self.fields[DEFORMATION] = -self.parameters.compliance[1:] @ self.memory()
+
+    def keep(self) -> tuple[Any, ...]:
+        """Return what ``restore`` needs to undo what happens from now on."""
+        grid = self.level, self.mesh, self.stiffness, self.table
+        return self.fields, self.lag_energy.copy(), self.clock.copy(), *grid
+
+    def restore(self, kept: tuple[Any, ...]) -> None:
+        """Be again as ``kept``."""
+        self.fields, self.lag_energy, clock, *grid = kept
+        self.level, self.mesh, self.stiffness, self.table = grid
+        for name in clock.dtype.names:
+            self.clock[name] = clock[name]
+
     def rewind(self, time: float) -> np.ndarray:
         """Go back to ``time``; return the memory gained since, (elements, n) in Pa·m.
 
-        It is returned on a mesh of its own, always the same, that of the finest level so far. The
-        surface keeps its mesh if it is in contact. To go on, ``remember`` first, then ``settle``.
+        It is returned on a mesh of its own, always the same, that of the finest level in the first
+        cycle about its widest edge. From the second on it was gathered there. The surface keeps its
+        mesh if it is in contact. To go on, ``remember`` first, then ``settle``.
         """
-        clock = self.clock
-        if self.archive[1] == 0:
-            self.archive = self._build_mesh(self.finest_used), float(clock["frame"])
-        archive, frame = self.archive
-        gained = self._carry(self.fields[MEMORY:], archive, frame / clock["frame"])
+        clock, elements = self.clock, len(self.background.values)
+        if elements:
+            gained = self.background.gained[2 : 2 + elements]
+        else:
+            if self.archive[1] == 0:
+                widest = max(float(clock["widest"]), self.open_frame)
+                self.archive = self._build_mesh(self.finest_used), widest
+            stretch = self.archive[1] / clock["frame"]
+            gained = self._carry(self.fields[MEMORY:], self.archive[0], stretch)
         if clock["edge"] == 0:
             self.level = self.first_level
             mesh = self._build_mesh(self.level)
@@ -204,7 +263,8 @@ class Surface:
         mesh, frame = self.archive
         self.background = Background(
             memory, frame, mesh.nodes[-1], mesh.edge_spacing, mesh.growth,
-            frame * self.mesh.decay, self.time,
+            frame * self.mesh.decay, self.time, mesh.nodes,
+            np.zeros((len(memory) + 10, mesh.nodes.size)),
         )  # fmt: skip
 
     def memory(self) -> np.ndarray:
@@ -232,8 +292,7 @@ class Surface:
         self.tabulate(float(clock["frame"]))
         height_at, profile, law, *_, potential = self.functions
         n, frame = mesh.nodes.size, clock["frame"]
-        tip, pressure, scratch = np.empty(n), np.empty(n), np.empty(n)
-        rise, far_work = np.empty(mesh.far.size), np.empty((3, mesh.far.size))
+        tip, scratch, rise = np.empty(n), np.empty(n), np.empty(mesh.far.size)
         raise_tip(profile, self.parameters.tip, mesh, frame, scratch, tip, rise)
         h0 = height_at(self.time, self.parameters.height)
         base = h0 - self.parameters.law[ORIGIN] + tip
@@ -253,21 +312,40 @@ class Surface:
         )  # fmt: skip
         if iterations < 0:
             raise DivergedError(f"no stable surface found at height {h0:g} m")
-        u, clock["deflection"] = unknowns[:-1], unknowns[-1]
+        clock["deflection"] = unknowns[-1]
+        return self.take(unknowns[:-1], v)
+
+    def take(self, u: np.ndarray, v: np.ndarray) -> tuple[float, ...]:
+        """Take a shape in equilibrium on a surface displaced by v, m, and return its record."""
+        mesh, clock = self.mesh, self.clock
+        height_at, profile, law, *_ = self.functions
+        n, frame = mesh.nodes.size, clock["frame"]
+        tip, pressure, scratch = np.empty(n), np.empty(n), np.empty(n)
+        rise, far_work = np.empty(mesh.far.size), np.empty((3, mesh.far.size))
+        raise_tip(profile, self.parameters.tip, mesh, frame, scratch, tip, rise)
+        h0, memory = height_at(self.time, self.parameters.height), self.memory()
+        elements = self.parameters.compliance[1:]
         self.fields[DEFORMATION] = u
-        self.fields[LOAD] = (v - u) / instantaneous
-        gap = base + clock["deflection"] - u
+        load = (v - u) / self.parameters.compliance[0]
+        strained = frame * mesh.stiffness @ (load - self.fields[LOAD])
+        self.lag_energy += (0.5 * (load + self.fields[LOAD]) - memory) @ strained
+        self.fields[LOAD] = load
+        if len(self.background.values):
+            mesh_there, frame_there = self.archive
+            there = self._carry(self.fields[LOAD : LOAD + 1], mesh_there, frame_there / frame)
+            self.background.gained[1] = there[0]
+        gap = h0 - self.parameters.law[ORIGIN] + tip + clock["deflection"] - u
         law(gap, self.parameters.law, pressure, scratch, n)
         force = tip_force(pressure, gap, rise, mesh, frame, law, self.parameters.law, far_work)
         edge = frame * find_radius(gap, mesh.nodes, self.edge_gap)
         zone = frame * find_radius(gap, mesh.nodes, self.open_gap) - edge
-        lag = self.fields[LOAD] - memory
-        rates = elements / self.parameters.retardation
         clock["frame_earlier"] = clock["frame_earliest"] = frame
         clock["edge"], clock["axis_gap"], clock["force"] = edge, gap[0], force
-        clock["force_scale"] = max(clock["force_scale"], abs(force))
+        clock["zone"] = zone if edge else 0.0
+        clock["force_scale"] = max(clock["force_scale"], -force)
         clock["history"] = 1
-        loss = 2 * np.pi * frame * rates @ np.sum((lag @ mesh.stiffness) * lag, axis=1)
+        clock["rides"] = 0.0
+        loss = 4 * np.pi * (elements / self.parameters.retardation) @ self.lag_energy
         spacing = frame * mesh.edge_spacing
         coarseness = spacing / max(zone, 1e-9 * frame) if edge else 0.0
         height = h0 + clock["deflection"]
@@ -281,18 +359,49 @@ class Surface:
         self.tabulate(float(frame))
         elastic = np.pi * frame * self.parameters.compliance[0] * (load @ mesh.stiffness @ load)
 
-        def density(radius: np.ndarray, deformation: Any) -> np.ndarray:
-            gap = h0 + self.contact.tip.profile(radius) - deformation - self.parameters.law[ORIGIN]
-            found = np.empty(gap.size)
-            self.functions.potential(gap, self.parameters.law, found, gap.size)
-            return found
-
-        near = frame**2 * mesh.masses @ density(frame * mesh.nodes, self.fields[DEFORMATION])
         end = frame * mesh.nodes[-1]
-        r = 2 * end / (1 + _POINTS)
-        beyond = np.sum(_WEIGHTS * density(r, 0.0) * r**3 / (2 * end))
+        beyond = 2 * end / (1 + _POINTS)
+        # There the surface is as high as at the last node, as for the force: in a wide dent the tip
+        # would be inside one that is flat.
+        shape = self.fields[DEFORMATION]
+        shape = np.concatenate([shape, np.full(beyond.size, shape[-1])])
+        radius = np.concatenate([frame * mesh.nodes, beyond])
+        gap = h0 + self.contact.tip.profile(radius) - shape - self.parameters.law[ORIGIN]
+        density = np.empty(gap.size)
+        self.functions.potential(gap, self.parameters.law, density, gap.size)
+        areas = np.concatenate([frame**2 * mesh.masses, _WEIGHTS * beyond**3 / (2 * end)])
         bending = 0.5 * self.lever.stiffness * deflection**2 if self.bends else 0.0
-        return float(elastic + bending + 2 * np.pi * (near + beyond))
+        return float(elastic + bending + 2 * np.pi * areas @ density)
+
+    def stored_energy(self) -> float:
+        """Energy stored in sample, surfaces and lever, J.
+
+        That of ``energy``, and ½ J_m ⟨y_m, K⁻¹ y_m⟩ of the elements. Old rims in y_m may lie on
+        coarse nodes; as y_m is q less a lag, ⟨q, K⁻¹ (y_m − ½ q)⟩ and the energy of the lag is the
+        same, but of elements too slow to move a small difference.
+        """
+        load, memory, frame = self.fields[LOAD], self.memory(), self.clock["frame"]
+        summed = 0.5 * frame * np.sum((memory @ self.mesh.stiffness) * memory, axis=1)
+        carried = frame * (memory - 0.5 * load) @ self.mesh.stiffness @ load + self.lag_energy
+        elements = np.where(self.parameters.retardation > self.too_slow, summed, carried)
+        return self.energy() + float(2 * np.pi * self.parameters.compliance[1:] @ elements)
+
+
+def find_softening(parameters: Parameters, duration: float) -> float:
+    """Return the compliance that a sample gains in a ``duration``, s, in instantaneous ones."""
+    elements, times = parameters.compliance[1:], parameters.retardation
+    return float(-elements @ np.expm1(-duration / times) / parameters.compliance[0])
+
+
+def choose_spacing_held(parameters: Parameters, duration: float) -> float:
+    """Return the spacing under a receding edge, in that aimed at, up to which the frame stays.
+
+    By how much softer the sample gets in a ``duration``, s: one that does not has no memory.
+    """
+    softened = find_softening(parameters, duration)
+    if softened < HARDLY_SOFTER:
+        return 0.0
+    return HELD if softened < FAR_SOFTER else HELD_IF_FAR_SOFTER
 
 
 def find_gap_origin(contact: Any) -> float:

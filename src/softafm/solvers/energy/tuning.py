@@ -29,6 +29,23 @@ EQUILIBRIUM_ERROR = 1e-3
 """Error of an equilibrium, relative to the gap, at a tolerance of 1e-2: below those of a step, as a
 slack contact follows its edge by the softest of its shapes (``softafm docs performance``)."""
 
+FARTHEST_RIDING_GUESS = 5.0
+"""Largest relative change of a gap in a first iteration that rides with the edge; between 0.7 and 5
+it made no difference."""
+
+LARGEST_LANDING, MOST_LANDING = 0.5, 40
+"""Largest relative change of a gap in an iteration towards a contact guessed from afar, and how
+many of them may be taken."""
+
+RIDING_ERROR = 0.1
+"""Error of an equilibrium that is solved with its edge, in units of the other ones'."""
+
+MOST_REFRAMES = 4
+"""How often memory is carried to the frame that such an equilibrium has found."""
+
+OF_THE_EDGE = 30.0
+"""Weight of the relative change of the frame beside that of the gaps where an iteration ends."""
+
 # The descent in energy, used where no stable shape is near.
 
 LARGEST_DESCENT = 0.4
@@ -42,6 +59,10 @@ SUFFICIENT = 1e-4
 usual value, Nocedal and Wright, Numerical Optimization, 2006, section 3.1)."""
 
 # Memory.
+
+AT_ONCE = 3e-3
+"""Creep time, in times in which the edge crosses the reach of the surface forces, below which creep
+counts as instantaneous, at a tolerance of 1e-2: it changes forces by less than that."""
 
 SHORT = 1e-2
 """Step over retardation time below which moments are series, as differences would cancel: both are
@@ -58,7 +79,22 @@ RINGING = 0.7
 DAMPING = 1.5
 """Part of the quadratic's correction that damps it, with the other sign (same test)."""
 
+AS_WIDE = 0.95
+"""Edge, in the widest so far, from which the memory has no old rim far outside it."""
+
+TOO_SLOW = 10.0, 1e4
+"""Retardation time, in times of the motion, beyond which the energy of an element is summed up as
+it is; of the period in steady cycles, where the element gathers the mean of the load."""
+
 # The frame that rides on the contact edge.
+
+STEEP = 0.05
+"""Width over which a tip rises from one to two ranges of the attraction, in radii of the open
+contact, below which its edge stays there (paraboloids have 0.4, cones 0.9, punches 0)."""
+
+RIDE_FROM = 0.25
+"""Radius of the edge, in radii of the open contact, beyond which a slack contact is solved together
+with it."""
 
 OPENING = 1.5
 """How much faster a frame closes on a contact that begins than its edge opens."""
@@ -73,8 +109,33 @@ LAG = 2.0
 """How far the edge moves, in edge spacings, while the frame catches up with it: at once, slack
 contacts amplify the change of mesh (``softafm docs performance``, "What did not help")."""
 
+HELD, HELD_IF_FAR_SOFTER = 1.3, 2.6
+"""Spacing of the nodes, in that aimed at, up to which they resolve an edge that recedes over them,
+so that the frame of a sample with memory stays; the second one if it gets ``FAR_SOFTER`` in the
+motion, as a Kelvin-Voigt solid does, and parts from the tip evenly. Half of the first leaves such a
+solid chasing an edge that is none, twice costs 2 % of the loop of a slow curve on polyethylene
+(tests/test_slow_and_soft.py)."""
+
+HARDLY_SOFTER, FAR_SOFTER = 1e-3, 1e3
+"""Compliance gained in a motion, in instantaneous ones: there is no memory; it is all memory."""
+
 SMALLEST_FRAME = 0.5
 """Smallest frame, in frames of the shape before: interpolation needs the same nodes in both."""
+
+TRACE_FROM = 0.2
+"""Move of the edge in a step, in edge spacings, from which the memory rides with it."""
+
+SLACKER = 10.0
+"""Tabor number of the softened sample from which on that pays: such a step costs 15 others."""
+
+FIRST_PANEL, NEXT_PANEL = 0.8, 2.2
+"""Width of the last panel of a step, in the shortest retardation time, and the next one's ratio."""
+
+FORGOTTEN_TIMES = 25.0
+"""Longest retardation times after which nothing is left of a load, to 1e-11."""
+
+STRAIGHTEST = 0.8
+"""Largest bend of the edge's path in a step, relative to its rise: it must not turn back."""
 
 # The mesh.
 
@@ -88,13 +149,13 @@ COARSEST_SPACING = 0.3
 SPACING = 0.2
 """Node spacing at the edge aimed at, in widths of the cohesive zone, at a tolerance of 1e-2."""
 
-GROWTH, SLOWEST_GROWTH = 0.3, 0.2
-"""Logarithmic growth of the spacing a node away from the edge, and its least one, in slack contacts
-(``softafm docs performance``, "What did not help": 0.45 slips in slack contacts)."""
+GROWTH = 0.3
+"""Logarithmic growth of the spacing a node away from the edge (``softafm docs performance``, "What
+did not help": 0.45 slips in slack contacts)."""
 
-SLACK = 3.0
-"""Fast Tabor number from which on the edge of a contact yields to small errors, such as those of a
-mesh that coarsens rapidly away from it (the same place)."""
+SLACK = 6.0
+"""Tabor number of the softened sample from which on the edge of a contact yields to small errors,
+so that it is solved for together with the surface."""
 
 FINER_THAN_NEEDED, COARSER_THAN_NEEDED = 0.35, 1.3
 """Spacing, in units of the one aimed at, at which the mesh is exchanged: more than a factor of two
@@ -112,7 +173,9 @@ MEMORY_ERROR = 0.01
 """Largest error of the memory in a step, relative to the gap, at that tolerance."""
 
 FORCE_ERROR = 0.01
-"""Largest error of the extrapolated force, relative to the largest so far, at that tolerance."""
+"""Largest error of the extrapolated force, relative to itself or to the largest attraction so far,
+if that is more, at that tolerance. Where it has fallen again, the largest repulsion is no measure:
+it may be a thousand times the pull-off."""
 
 APPROACH = 0.3
 """Part of the gap that an approaching tip may cross in a step before it feels the surface."""
@@ -143,12 +206,16 @@ FIRST_STEP = 0.005
 """First step of a motion, in times to the first stop; tests/test_reproducible.py varies it from a
 thousandth to three times that, and V and E change by 2e-4 at most."""
 
-AFTER_A_BREAK = 0.1
-"""First step after a break of the motion, in units of the last one before it."""
+AFTER_A_BREAK, FIRST_PART_OF_GAP = 0.1, 0.03
+"""First step after a break of the motion: in units of the last one before it, and, in contact, in
+which the tip may move by a part of the gap at the edge, at a tolerance of 1e-2."""
 
 SHORTEST_STEP = 1e-4
 """Shortest step before a fall, in retardation times or the time in which the tip crosses the gap of
 the contact edge, whichever is less."""
+
+SHORTER = 1e-3
+"""The same for slack contacts, in units of the others': after a jump their edges run fast."""
 
 # Falls.
 
@@ -192,10 +259,9 @@ STAGNANT = 8
 
 # Doubts.
 
-SLACKEST = 18.0
-"""Fast Tabor number up to which an edge lets go between nodes as it would in a continuum
-(``benchmarks/table.py``: elastic contacts at 30)."""
-
 SHARPEST = 3.2
 """Sharpness of a law beyond which an edge may catch on the nodes (``benchmarks/every_contact.py``:
 Dugdale's law with less smoothing than 0.07 is up to 2 % off)."""
+
+LEAST_ENERGY = 0.02
+"""Energy that still counts, in largest forces times reaches of the surface law."""

@@ -1,0 +1,136 @@
+"""Solutions of an approach curve, tapped: what holds of the map, and what is corrected.
+
+The map of taps interpolates. A few solutions are therefore run themselves, and where the map missed
+one of them its neighbours, too. What was run counts: a solution moves to where its taps balance the
+drive.
+"""
+
+from collections.abc import Callable, Iterator
+from itertools import pairwise
+from typing import NamedTuple
+
+import numpy as np
+
+from softafm.checks.gathering import Placed
+from softafm.errors import AccuracyWarning
+from softafm.instrument.oscillator import Drive
+from softafm.modes.amplitude_curve import Solutions
+from softafm.modes.tap_map import OBSERVABLES, TapMap
+
+_FIRST, _MOST_TAPS = 8, 5
+_CLOSE, _FAR = 0.2, 2.0
+"""Tolerances that the excess may be off where slopes give the rest, and where a solution holds."""
+_NEAR, _STEP = 0.1, 1e-2
+"""Units that a height may be off, and over which slopes are taken."""
+_LOSS, _FAINT = 2.0, 4e-4
+"""Tolerances that a dissipation may be off, relative to itself or to this share of the largest
+force times the amplitude."""
+
+Tap = Callable[[float, float], np.ndarray]
+
+
+class Confirmed(NamedTuple):
+    """Closest approaches, m, (n,) and observables (7, n) of solutions.
+
+    ``solutions`` of them were run, in ``taps``; ``wrong`` are warnings of those that do not hold.
+    """
+
+    approach: np.ndarray
+    observables: np.ndarray
+    solutions: int
+    taps: int
+    wrong: list[Placed]
+
+
+class _Tapped(NamedTuple):
+    """A tap near a solution: closest approach, m, observables, and excess of the force needed."""
+
+    approach: float
+    values: np.ndarray
+    excess: float
+
+
+def confirm_solutions(
+    found: Solutions, taps: TapMap, tap: Tap, drive: Drive, tolerance: float
+) -> Confirmed:
+    """Run solutions: a few that lie far apart, and more and more near those that the map missed."""
+    approach, observables = found.approach.copy(), taps.observables(found.amplitude, found.approach)
+    order = np.lexsort((found.row, np.array(found.branch)))
+    missed: dict[int, bool] = {}
+    wrong: list[Placed] = []
+    count = 0
+    pending = set(np.linspace(0, order.size - 1, min(order.size, _FIRST)).astype(int).tolist())
+    while pending:
+        for position in sorted(pending):
+            i = order[position]
+            place = amplitude, _ = float(found.amplitude[i]), float(approach[i])
+            tapped = [*_seek(place, observables[:, i], taps, tap, drive, tolerance)]
+            approach[i], observables[:, i], doubt = _settle(amplitude, tapped, taps, tolerance)
+            wrong += [(place, doubt)] if doubt is not None else []
+            count += len(tapped)
+            missed[position] = len(tapped) > 1
+        near = (pair for pair in pairwise(sorted(missed)) if missed[pair[0]] or missed[pair[1]])
+        pending = {(low + high) // 2 for low, high in near} - set(missed)
+    return Confirmed(approach, observables, len(missed), count, wrong)
+
+
+def _seek(
+    place: tuple[float, float],
+    expected: np.ndarray,
+    taps: TapMap,
+    tap: Tap,
+    drive: Drive,
+    tolerance: float,
+) -> Iterator[_Tapped]:
+    """Taps that approach a solution by secants, the first with the slope of the map.
+
+    One is enough where the map holds what is ``expected``.
+    """
+    amplitude, approach = place
+    slope, last = taps.excess_slope(amplitude, approach), None
+    for _ in range(_MOST_TAPS):
+        values = tap(amplitude, approach)
+        here = _Tapped(approach, values, float(drive.excess(amplitude, values[0], values[1])))
+        yield here
+        if last is not None and here.approach != last.approach:
+            secant = (here.excess - last.excess) / (here.approach - last.approach)
+            slope = secant if secant * slope > 0 else slope
+        holds = last is not None or not _miss(here, expected, amplitude, tolerance)
+        if abs(here.excess) <= _CLOSE * tolerance and holds:
+            return
+        last = here
+        approach = here.approach - float(np.clip(here.excess / slope, -taps.unit, taps.unit))
+
+
+def _miss(tapped: _Tapped, expected: np.ndarray, amplitude: float, tolerance: float) -> bool:
+    """Whether the map is off by more than the tolerance where a tap was run."""
+    force = np.abs(tapped.values[[OBSERVABLES.index("force_max"), OBSERVABLES.index("force_min")]])
+    loss = max(abs(tapped.values[1]), _FAINT * force.max() * amplitude)
+    off = abs(expected[1] - tapped.values[1])
+    return abs(tapped.excess) > tolerance or off > _LOSS * tolerance * loss
+
+
+def _settle(
+    amplitude: float, tapped: list[_Tapped], taps: TapMap, tolerance: float
+) -> tuple[float, np.ndarray, AccuracyWarning | None]:
+    """Closest approach, m, and observables of a solution from the taps near it, and a doubt."""
+    best = min(tapped, key=lambda each: abs(each.excess))
+    others = [each for each in tapped if each.approach != best.approach]
+    if others:
+        other = min(others, key=lambda each: abs(each.excess))
+        slopes = (best.values - other.values) / (best.approach - other.approach)
+        slope = (best.excess - other.excess) / (best.approach - other.approach)
+    else:
+        step = _STEP * taps.unit
+        far, near = (taps.observables(amplitude, best.approach + s) for s in (step, -step))
+        slopes, slope = (far - near) / (2 * step), taps.excess_slope(amplitude, best.approach)
+    off = -best.excess / slope if slope else np.inf
+    if abs(off) > _NEAR * taps.unit:
+        if abs(best.excess) <= _FAR * tolerance:
+            return best.approach, best.values, None
+        text = (
+            f"the solution of amplitude {amplitude:.3g} m is off by about {abs(off):.2g} m in "
+            "height: taps between those that were run are not smooth"
+        )
+        return best.approach, best.values, AccuracyWarning(text, abs(off))
+    return best.approach + off, best.values + slopes * off, None
