@@ -102,7 +102,8 @@ def test_a_motion_beyond_the_window_is_recorded_too():
     result, told = warned_of(
         lambda: sa.force_distance(contact, sa.Triangle(4e-9, 2e-9, 1e-5), tolerance=0.1)
     )
-    assert ["enlarge the window" in text for text in told] == [True]
+    # It also ends in contact.
+    assert sum("enlarge the window" in text for text in told) == 1
     assert result.attrs["warnings"].splitlines() == told
 
 

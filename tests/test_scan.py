@@ -175,7 +175,7 @@ def test_a_pixel_without_a_result_is_nan_and_says_why(imaging):
 def test_warnings_of_solvers_are_told_once():
     rough = Energy(finest_spacing=0.3)
     sharp = sa.Contact(
-        sa.Paraboloid(1e-6), sa.Elastic(1e6, 0.5), sa.LennardJones.from_work_of_adhesion(0.05, 1e-9)
+        sa.Paraboloid(1e-6), sa.Elastic(1e8, 0.5), sa.LennardJones.from_work_of_adhesion(0.05, 1e-9)
     )
     ramp = sa.ForceVolume(sa.Triangle(1e-6, -0.1e-6, 1e-6))
     with warnings.catch_warnings(record=True) as caught:

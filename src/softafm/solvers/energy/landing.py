@@ -143,8 +143,8 @@ class Landing:
         surface = self.surface
         law = surface.contact.surface
         zone = 0.85 * law.range**2 / (self.compliance * self.work)
-        surface.level = surface._find_level(surface.target * zone / radius)
-        surface._lay(surface._build_mesh(surface.level))
+        surface.level = surface.find_level(surface.target * zone / radius)
+        surface.lay(surface.build_mesh(surface.level))
         height = float(self.heights(np.geomspace(0.5, 1, 64) * radius)[0][-1])
         surface.tabulate(radius)
         crack = self.crack(radius, height)

@@ -280,8 +280,9 @@ class Run:
         duration = min(2.0**self.slips * self.controls.shortest_step, stop - start)
         end = stop if duration == stop - start else start + duration
         self.end_of_slip = start + SLIPS_AGAIN * duration
-        touching = edge > 0
-        record = land(surface, end, before, touching) if self.contact.adhesive else None
+        record = None
+        if self.contact.adhesive and self.slips == 0:
+            record = land(surface, end, before, touching=edge > 0)
         if record is None:
             creep_down(self, end, duration)
         surface.functions.accept_force(

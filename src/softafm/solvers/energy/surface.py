@@ -113,11 +113,11 @@ class Surface:
         duration = inf if is_steady(motion) else period
         self.held = choose_spacing_held(self.parameters, duration)
         self.finest_level = max(0, ceil(log2(COARSEST_SPACING / finest_spacing)))
-        self.level = self.first_level = self._find_level(0.4 * contact.open_width / self.open_frame)
-        self._lay(self._build_mesh(self.level))
-        self.meshes, self.most_nodes = 1, self.mesh.nodes.size
-        self.finest_spacing, self.finest_used = self.mesh.edge_spacing, self.level
-        self.archive = self._build_mesh(self.level), 0.0
+        self.level = self.first_level = self.find_level(0.4 * contact.open_width / self.open_frame)
+        self.meshes = self.most_nodes = 0
+        self.finest_spacing, self.finest_used = inf, 0
+        self.lay(self.build_mesh(self.level))
+        self.archive = self.build_mesh(self.level), 0.0
         elements = self.parameters.retardation.size
         self._rooms: dict[tuple[int, int, int], Room] = {}
         self.fields = np.zeros((MEMORY + elements, self.mesh.nodes.size))
@@ -131,11 +131,15 @@ class Surface:
         self.background = no_background()
         self.clock["force_scale"] = contact.force_scale
 
-    def _build_mesh(self, level: int) -> UnitMesh:
+    def build_mesh(self, level: int) -> UnitMesh:
         return unit_mesh(COARSEST_SPACING * 2.0**-level, self.growth, EXTENT)
 
-    def _lay(self, mesh: UnitMesh) -> None:
-        """Take a mesh, with the stiffness of the body on it."""
+    def lay(self, mesh: UnitMesh) -> None:
+        """Take a mesh, that of the level, with the stiffness of the body on it."""
+        self.meshes += 1
+        self.most_nodes = max(self.most_nodes, mesh.nodes.size)
+        self.finest_spacing = min(self.finest_spacing, mesh.edge_spacing)
+        self.finest_used = max(self.finest_used, self.level)
         body = self.contact.body
         self.stiffness = Stiffness(body, mesh)
         shown = self.stiffness.uniform
@@ -155,7 +159,7 @@ class Surface:
         self.table = self.table._replace(entries=self.stiffness.entries, start=float(start))
         find_stiffness(self.table, frame)
 
-    def _find_level(self, spacing: float) -> int:
+    def find_level(self, spacing: float) -> int:
         """Level of the mesh whose edge spacing, in contact radii, is at most this."""
         level = ceil(log2(COARSEST_SPACING / spacing) - 1e-9)
         return min(max(level, 0), self.finest_level)
@@ -202,21 +206,17 @@ class Surface:
         """Carry all fields to the mesh that suits a cohesive zone seen ``coarseness`` from here."""
         self.level = self.first_level
         if coarseness > 0:
-            self.level = self._find_level(self.mesh.edge_spacing * self.target / coarseness)
-        mesh = self._build_mesh(self.level)
+            self.level = self.find_level(self.mesh.edge_spacing * self.target / coarseness)
+        mesh = self.build_mesh(self.level)
         self.fields = self._carry(self.fields, mesh, 1.0)
-        self._lay(mesh)
-        self.meshes += 1
-        self.most_nodes = max(self.most_nodes, self.mesh.nodes.size)
-        self.finest_spacing = min(self.finest_spacing, self.mesh.edge_spacing)
-        self.finest_used = max(self.finest_used, self.level)
+        self.lay(mesh)
 
     def open(self) -> None:
         """Let the surface be as its memory has it, in the frame of a contact yet to come."""
         self.level = self.first_level
-        mesh, stretch = self._build_mesh(self.level), self.open_frame / self.clock["frame"]
+        mesh, stretch = self.build_mesh(self.level), self.open_frame / self.clock["frame"]
         self.fields = self._carry(self.fields, mesh, stretch)
-        self._lay(mesh)
+        self.lay(mesh)
         self.clock["frame"], self.clock["deflection"] = self.open_frame, 0.0
         self.fields[DEFORMATION] = -self.parameters.compliance[1:] @ self.memory()
 
@@ -245,14 +245,14 @@ class Surface:
         else:
             if self.archive[1] == 0:
                 widest = max(float(clock["widest"]), self.open_frame)
-                self.archive = self._build_mesh(self.finest_used), widest
+                self.archive = self.build_mesh(self.finest_used), widest
             stretch = self.archive[1] / clock["frame"]
             gained = self._carry(self.fields[MEMORY:], self.archive[0], stretch)
         if clock["edge"] == 0:
             self.level = self.first_level
-            mesh = self._build_mesh(self.level)
+            mesh = self.build_mesh(self.level)
             self.fields = self._carry(self.fields, mesh, self.open_frame / clock["frame"])
-            self._lay(mesh)
+            self.lay(mesh)
             clock["frame"] = self.open_frame
         self.fields[MEMORY:] = 0
         clock["time"] = time

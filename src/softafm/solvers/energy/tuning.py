@@ -60,7 +60,7 @@ usual value, Nocedal and Wright, Numerical Optimization, 2006, section 3.1)."""
 
 # Memory.
 
-AT_ONCE = 3e-3
+AT_ONCE = 1e-3
 """Creep time, in times in which the edge crosses the reach of the surface forces, below which creep
 counts as instantaneous, at a tolerance of 1e-2: it changes forces by less than that."""
 
