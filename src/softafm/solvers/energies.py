@@ -84,7 +84,7 @@ def measure_energies(history: "History", start: float, stop: float) -> Energies:
     inside = (history.time >= start - slack) & (history.time <= stop + slack)
     motion = history.motion
     work, curved = history.compare_rules(history.force, motion.velocity, start, stop)
-    viscous = history.integrate(history.viscous_power, np.ones_like, start, stop)
+    viscous = history.integrate_power(start, stop)
     jumped = (history.jump_time > start) & (history.jump_time <= stop)
     jumps = float(history.jump_energy[jumped].sum())
     stored = _find_stored(history, inside, bool(jumped.any()))

@@ -66,6 +66,7 @@ RECORD_FIELDS = record(
     "edge",  # radius of the contact edge, m
     "axis",  # displacement of the surface on the axis, m
     "loss",  # power dissipated in the sample, W
+    "lost",  # energy dissipated in it during the step, J
     "coarseness",  # node spacing at the edge over the width of the cohesive zone
     "frame",  # radius of the frame, m
     "jump",  # energy released if an elastic jump led there, J, else 0

@@ -336,6 +336,7 @@ class Run:
             contact_radius=records["edge"],
             axis_deformation=records["axis"],
             viscous_power=records["loss"],
+            viscous_energy=records["lost"],
             pieces=tuple(slice(int(a), int(b)) for a, b in zip(starts, ends, strict=True)),
             motion=self.motion,
             jump_time=time[jumped],

@@ -13,10 +13,32 @@ from softafm.solvers.energy.tuning import CLOSEST, MOST_REFRAMES, RIDING_ERROR
 
 STABLE, UNSTABLE, UNKNOWN = 1, 0, -1
 
+KEEPS, RIDES, TRACES = 0, 1, 2
+"""How a trial ``rides``: the frame is kept, solved for, or solved for with a memory that rides."""
+
 
 @inline
-def solve(trial, law, parameters, mesh, controls, clock, work):
-    """Bring surface and lever into equilibrium, with the load; whether a stable shape was near."""
+def solve(
+    trial, height, profile, law, parameters, background, mesh, table, controls, fields, clock, work,
+    room, pivots,
+):  # fmt: skip
+    """Bring a trial into equilibrium; returns it in the frame found, and STABLE or what else."""
+    if trial.rides == TRACES:
+        return solve_tracing(
+            trial, profile, law, parameters, background, mesh, controls, fields, clock, work, room,
+            pivots,
+        )  # fmt: skip
+    if trial.rides == RIDES:
+        return solve_riding(
+            trial, height, profile, law, parameters, background, mesh, table, controls, fields,
+            clock, work,
+        )  # fmt: skip
+    return trial, solve_kept(trial, law, parameters, mesh, controls, clock, work)
+
+
+@inline
+def solve_kept(trial, law, parameters, mesh, controls, clock, work):
+    """Bring surface and lever into equilibrium, with the load, in the frame of the trial."""
     iterations = equilibrate(
         work.u, work.v, trial.frame * trial.compliance, work.standoff, trial.lever, trial.rest,
         work.rise, mesh, law, parameters.law, CLOSEST * controls.edge_gap, controls.newton,
@@ -26,7 +48,7 @@ def solve(trial, law, parameters, mesh, controls, clock, work):
     if iterations > 0:
         for i in range(mesh.nodes.size):
             work.load_new[i] = (work.v[i] - work.u[i]) / trial.compliance
-    return iterations > 0
+    return STABLE if iterations > 0 else UNSTABLE
 
 
 @inline
