@@ -119,6 +119,10 @@ solid chasing an edge that is none, twice costs 2 % of the loop of a slow curve 
 HARDLY_SOFTER, FAR_SOFTER = 1e-3, 1e3
 """Compliance gained in a motion, in instantaneous ones: there is no memory; it is all memory."""
 
+COVER = 0.2
+"""Smallest frame of a contact that only repels, in those of its widest edge: the mesh covers all of
+the dent, in which the tip may lie closely where it parts (tests/test_bodies.py)."""
+
 SMALLEST_FRAME = 0.5
 """Smallest frame, in frames of the shape before: interpolation needs the same nodes in both."""
 
