@@ -1,17 +1,47 @@
 """A step solved: surface and lever in equilibrium, in a frame given or together with its edge."""
 
+from numba import int64, types
+
 from softafm.compiled.dense import solve_factorised
-from softafm.compiled.functions import inline
+from softafm.compiled.functions import (
+    INTERNAL,
+    HEIGHT,
+    PRESSURE,
+    PROFILE,
+    compile_for,
+    inline,
+    pointer_to,
+)
 from softafm.solvers.energy.equilibrium import equilibrate
-from softafm.solvers.energy.layout import LOAD, LOAD_EARLIER, ORIGIN
+from softafm.solvers.energy.layout import (
+    BACKGROUND,
+    CLOCK,
+    CONTROLS,
+    LOAD,
+    LOAD_EARLIER,
+    MATRIX,
+    MESH,
+    ORIGIN,
+    PARAMETERS,
+    PIVOTS,
+    ROOM,
+    TABLE,
+)
 from softafm.solvers.energy.memory import NEW
-from softafm.solvers.energy.proposal import Trial, carry_past, find_extrapolation_weights
+from softafm.solvers.energy.proposal import (
+    TRIAL,
+    Trial,
+    carry_past,
+    find_extrapolation_weights,
+    furnish,
+)
 from softafm.solvers.energy.riding import lay_phase, ride
 from softafm.solvers.energy.stiffness import find_stiffness
 from softafm.solvers.energy.tracing import trace
 from softafm.solvers.energy.tuning import CLOSEST, MOST_REFRAMES, RIDING_ERROR
 
 STABLE, UNSTABLE, UNKNOWN = 1, 0, -1
+SOLUTION = types.Tuple((TRIAL, int64))
 
 KEEPS, RIDES, TRACES = 0, 1, 2
 """How a trial ``rides``: the frame is kept, solved for, or solved for with a memory that rides."""
@@ -25,13 +55,12 @@ def solve(
     """Bring a trial into equilibrium; returns it in the frame found, and STABLE or what else."""
     if trial.rides == TRACES:
         return solve_tracing(
-            trial, profile, law, parameters, background, mesh, controls, fields, clock, work, room,
-            pivots,
+            trial, profile, law, parameters, background, mesh, controls, fields, clock, room, pivots
         )  # fmt: skip
     if trial.rides == RIDES:
         return solve_riding(
             trial, height, profile, law, parameters, background, mesh, table, controls, fields,
-            clock, work,
+            clock, room,
         )  # fmt: skip
     return trial, solve_kept(trial, law, parameters, mesh, controls, clock, work)
 
@@ -64,15 +93,22 @@ def find_slide(v, mesh, frame, slide):
         slide[i] = -v[i] / frame
 
 
-@inline
+@compile_for(
+    SOLUTION(
+        TRIAL, pointer_to(HEIGHT), pointer_to(PROFILE), pointer_to(PRESSURE), PARAMETERS,
+        BACKGROUND, MESH, TABLE, CONTROLS, MATRIX, CLOCK, ROOM,
+    ),
+    **INTERNAL,
+)  # fmt: skip
 def solve_riding(
-    trial, height, profile, law, parameters, background, mesh, table, controls, fields, clock, work
+    trial, height, profile, law, parameters, background, mesh, table, controls, fields, clock, room
 ):  # fmt: skip
     """As ``solve``, with the edge, from a guess whose gaps are left in ``work.shape``.
 
     Returns the trial in the frame found, and STABLE, UNSTABLE, or UNKNOWN if the stiffness in
     ``clock.wanted`` is to be tabulated.
     """
+    work = furnish(room)
     n, elements = mesh.nodes.size, parameters.retardation.size
     slide, kept = work.strained[0] if elements > 0 else work.scratch, work.riding[2, :n]
     for i in range(n):
@@ -120,12 +156,18 @@ def solve_riding(
     return found, outcome
 
 
-@inline
+@compile_for(
+    SOLUTION(
+        TRIAL, pointer_to(PROFILE), pointer_to(PRESSURE), PARAMETERS, BACKGROUND, MESH, CONTROLS,
+        MATRIX, CLOCK, ROOM, PIVOTS,
+    ),
+    **INTERNAL,
+)  # fmt: skip
 def solve_tracing(
-    trial, profile, law, parameters, background, mesh, controls, fields, clock, work, room,
-    pivots,
+    trial, profile, law, parameters, background, mesh, controls, fields, clock, room, pivots
 ):  # fmt: skip
     """As ``solve_riding``, with a memory that rides too."""
+    work = furnish(room)
     n, elements = mesh.nodes.size, parameters.retardation.size
     known = min(int(clock.rides), trial.history)
     for i in range(n):
