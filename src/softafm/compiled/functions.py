@@ -38,7 +38,7 @@ _NO_MEMORY: dict[str, Any] = {"_nrt": False}
 """Of loops that take no memory, and so need not count the references to that of their arrays."""
 
 _NO_POINTER: dict[str, Any] = {"no_cfunc_wrapper": True}
-"""Of loops that no other loop calls by an address: to wrap all their arrays takes long to compile."""
+"""Of loops that no other loop calls by an address: wrapping their arrays takes long to compile."""
 
 INTERNAL: dict[str, Any] = {"no_cpython_wrapper": True}
 """Options of loops that are called from other loops only, and not from Python."""

@@ -4,8 +4,8 @@ from numba import int64, types
 
 from softafm.compiled.dense import solve_factorised
 from softafm.compiled.functions import (
-    INTERNAL,
     HEIGHT,
+    INTERNAL,
     PRESSURE,
     PROFILE,
     compile_for,
