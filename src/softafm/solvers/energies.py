@@ -70,10 +70,10 @@ class Energies(NamedTuple):
         The integral of a force that goes to and fro on nearly the same curve is a small difference
         of large numbers, while what dashpots and jumps take is known to a part of itself.
         """
+        if self.spent == 0 and self.spent_error == 0:  # nothing that could take any
+            return 0.0
         if not self.balanced or self.spent is None:
             return self.work
-        if self.spent_error == 0:
-            return self.spent
         ours, theirs = self.spent_error**2, self.work_error**2
         return (self.work * ours + self.spent * theirs) / (ours + theirs)
 
