@@ -79,12 +79,16 @@ def serve(pipe) -> None:
     while True:
         seed, tolerance, limit = pipe.recv()
         experiment = replace(contacts.draw(seed), tolerance=tolerance)
-        touching = experiment.contact
-        touching.surface.compiled_pressure, touching.tip.compiled_profile  # noqa: B018 (to compile)
+        compile_parts(experiment.contact)
         resource.setrlimit(resource.RLIMIT_CPU, (int(process_time() + limit) + 1, -1))
         found = perform(experiment)
         resource.setrlimit(resource.RLIMIT_CPU, (-1, -1))
         pipe.send(found)
+
+
+def compile_parts(contact: sa.Contact) -> tuple:
+    """Return the compiled law and profile of a contact, so that its run need not compile them."""
+    return contact.surface.compiled_pressure, contact.tip.compiled_profile
 
 
 def perform(experiment) -> dict:

@@ -150,7 +150,10 @@ def compare(drawn: Drawn, result, row: int, tolerance: float) -> dict:
     named = np.flatnonzero(~np.isnan(heights))
     named = named[np.argsort(-heights[named])]
     found = [float(heights[i] - amplitude) for i in named]
-    near = lambda d: any(abs(d - m) < 3 * drawn.contact.reach for m in marginal)  # noqa: E731
+
+    def near(d):
+        return any(abs(d - m) < 3 * drawn.contact.reach for m in marginal)
+
     out = {
         "zeros": zeros,
         "found": found,

@@ -110,9 +110,7 @@ def test_a_server_that_is_gone_is_told(serve, visit):
     site = serve("--memory-limit", "0.5")
     page = visit(site.address)
     page.locator("button.run").click()
-    page.locator(
-        ".run-failed .problem", has_text="its result has 1 MB, more than 0.5 MB"
-    ).wait_for()
+    page.locator(".run-failed .problem", has_text="MB, more than 0.5 MB").wait_for()
     assert page.get_by_role("alert").is_hidden()
     site.process.terminate()
     page.get_by_role("alert").wait_for()

@@ -37,6 +37,12 @@ _OPTIONS: dict[str, Any] = {
 _NO_MEMORY: dict[str, Any] = {"_nrt": False}
 """Of loops that take no memory, and so need not count the references to that of their arrays."""
 
+_NO_POINTER: dict[str, Any] = {"no_cfunc_wrapper": True}
+"""Of loops that no other loop calls by an address: wrapping their arrays takes long to compile."""
+
+INTERNAL: dict[str, Any] = {"no_cpython_wrapper": True}
+"""Options of loops that are called from other loops only, and not from Python."""
+
 PRESSURE = void(_ARRAY, _ARRAY, _ARRAY, _ARRAY, int64)
 """``(gap, parameters, pressure, slope, n)``: p and dp/dh of the first n gaps, in Pa and Pa/m.
 
@@ -81,7 +87,7 @@ def compile_for(signature: Any, **options: Any) -> Callable[[Callable], Any]:
     def compile_now(function: Callable) -> Any:
         if not store.is_ours(function.__code__.co_filename):
             raise RuntimeError(f"{function.__code__.co_filename} is not in store.ROOMS")
-        dispatcher = njit(**(_OPTIONS | _NO_MEMORY | options))(function)
+        dispatcher = njit(**(_OPTIONS | _NO_MEMORY | _NO_POINTER | options))(function)
         dispatcher._cache = _Store(function)
         with store.take_turns():
             dispatcher.compile(signature)
@@ -177,7 +183,8 @@ class CompiledFunction(types.WrapperAddressProtocol):
 
     @cached_property
     def _compiled(self):
-        compile_it = compile_for if self._on_disk else partial(njit, **_OPTIONS)
+        on_disk = partial(compile_for, no_cfunc_wrapper=False)
+        compile_it = on_disk if self._on_disk else partial(njit, **_OPTIONS)
         return compile_it(self._signature)(self._python)
 
     @cached_property

@@ -70,10 +70,10 @@ class Energies(NamedTuple):
         The integral of a force that goes to and fro on nearly the same curve is a small difference
         of large numbers, while what dashpots and jumps take is known to a part of itself.
         """
+        if self.spent == 0 and self.spent_error == 0:  # nothing that could take any
+            return 0.0
         if not self.balanced or self.spent is None:
             return self.work
-        if self.spent_error == 0:
-            return self.spent
         ours, theirs = self.spent_error**2, self.work_error**2
         return (self.work * ours + self.spent * theirs) / (ours + theirs)
 
@@ -84,7 +84,7 @@ def measure_energies(history: "History", start: float, stop: float) -> Energies:
     inside = (history.time >= start - slack) & (history.time <= stop + slack)
     motion = history.motion
     work, curved = history.compare_rules(history.force, motion.velocity, start, stop)
-    viscous = history.integrate(history.viscous_power, np.ones_like, start, stop)
+    viscous = history.integrate_power(start, stop)
     jumped = (history.jump_time > start) & (history.jump_time <= stop)
     jumps = float(history.jump_energy[jumped].sum())
     stored = _find_stored(history, inside, bool(jumped.any()))

@@ -179,4 +179,5 @@ def follow_edge(step, clock, mesh, controls):
         return frame
     pace = min(1.0, abs(ahead) / (controls.slack * node))
     ridden = frame + choose_frame(edge + ahead, controls.open_frame) - suited
-    return max(ridden + pace * (suited - frame), SMALLEST_FRAME * frame)
+    covering = min(controls.cover * clock.widest, frame)
+    return max(ridden + pace * (suited - frame), SMALLEST_FRAME * frame, covering)

@@ -66,6 +66,7 @@ RECORD_FIELDS = record(
     "edge",  # radius of the contact edge, m
     "axis",  # displacement of the surface on the axis, m
     "loss",  # power dissipated in the sample, W
+    "lost",  # energy dissipated in it during the step, J
     "coarseness",  # node spacing at the edge over the width of the cohesive zone
     "frame",  # radius of the frame, m
     "jump",  # energy released if an elastic jump led there, J, else 0
@@ -160,6 +161,7 @@ class Controls(NamedTuple):
     to the largest attraction so far.
     ``slack`` is how far the edge moves, in edge spacings, while the frame catches up with it; the
     frame stays behind an edge where it is that its nodes lie closer than ``held`` times the zone.
+    Nor does it close to less than ``cover`` of the widest edge so far.
     Remeshing is asked for when the coarseness of a record leaves ``finest`` to ``coarsest``.
     The step in which the force reaches ``trigger``, N, is the last. A contact whose edge is beyond
     ``ride_from``, m, is solved together with its edge.
@@ -178,6 +180,7 @@ class Controls(NamedTuple):
     newton: float
     slack: float
     held: float
+    cover: float
     finest: float
     coarsest: float
     most_tries: float

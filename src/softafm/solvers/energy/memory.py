@@ -126,7 +126,9 @@ def displace_by_memory(compliance, weights, load_earlier, load, memory, old, lag
 
 
 @inline
-def carry_lag_energy(frame, anew, weights, left, lags, strained, stiffness, energies):
+def carry_lag_energy(
+    compliance, retardation, step, frame, anew, weights, left, lags, strained, stiffness, energies
+):
     """Carry ``energies`` L_m = ½⟨e_m, K⁻¹ e_m⟩ of the lags e_m = q − y_m, Pa² m³, over a step.
 
     With what the step ``left`` of the old lags, ε e with ε = e^(−dt/τ_m), and d = e⁺ − ε e,
@@ -136,8 +138,12 @@ def carry_lag_energy(frame, anew, weights, left, lags, strained, stiffness, ener
     where K⁻¹ d is smooth at the old rims in e, which may lie on coarse nodes. ``anew`` sums up e⁺
     itself, which serves as long as it has no rim but the edge. ``lags`` (elements, n), those at the
     end, and ``left`` are overwritten.
+
+    Returns what the dashpots take over the step, J: 2π J_m (L − L⁺ + 2k (L⁺ − ε² L)/(1 − ε²)) with
+    k = dt/τ_m, exact for a lag that relaxes, or approaches what a steady motion drives it to.
     """
     elements, n = lags.shape
+    lost = 0.0
     for m in range(elements):
         for i in range(n):
             end, start = lags[m, i], 0.0 if anew else left[m, i]
@@ -147,9 +153,16 @@ def carry_lag_energy(frame, anew, weights, left, lags, strained, stiffness, ener
         product = 0.0
         for i in range(n):
             product += left[m, i] * strained[m, i]
-        kept = 0.0 if anew else weights[m, DECAY] * weights[m, DECAY] * energies[m]
+        pace, before = step / retardation[m], energies[m]
+        faded = weights[m, DECAY] * weights[m, DECAY]
+        kept = 0.0 if anew else faded * before
         # Where a lag has all but died away, what rounding leaves may be below zero.
         energies[m] = max(kept + frame * product, 0.0)
+        driven = 2.0 * pace / max(1.0 - faded, 1e-300) * (energies[m] - faded * before)
+        if pace < SHORT:  # the straight line between, as the difference above would cancel
+            driven = energies[m] - before + pace * (energies[m] + before)
+        lost += 2.0 * pi * compliance[m + 1] * (before - energies[m] + driven)
+    return lost
 
 
 @inline

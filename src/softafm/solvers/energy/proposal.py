@@ -3,7 +3,7 @@
 from typing import NamedTuple
 
 import numpy as np
-from numba import float64, int64
+from numba import float64, int64, types
 
 from softafm.compiled.functions import (
     compile_for,
@@ -83,6 +83,9 @@ class Trial(NamedTuple):
     rest: float
     history: int
     rides: int
+
+
+TRIAL = types.NamedTuple((*[float64] * 7, int64, int64), Trial)
 
 
 @inline

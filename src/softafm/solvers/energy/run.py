@@ -28,6 +28,7 @@ from softafm.solvers.energy.step import advance
 from softafm.solvers.energy.surface import Surface
 from softafm.solvers.energy.tuning import (
     AFTER_A_BREAK,
+    COVER,
     FEWEST_STEPS,
     FINEST_TARGET,
     FIRST_PART_OF_GAP,
@@ -86,6 +87,7 @@ class Run:
             newton=self.surface.accuracy,
             slack=LAG,
             held=0.0,
+            cover=0.0 if contact.adhesive else COVER,
             finest=0.0,
             coarsest=0.0,
             most_tries=float(solver.most_steps),
@@ -302,6 +304,8 @@ class Run:
 
         A fall cannot gain energy: what it seems to is an error of the two shapes.
         """
+        if not np.isfinite(released):
+            released = -np.inf
         self.jumps.append(self.surface.time)
         self.records[self.count - 1]["jump"] = max(released, 0.0)
         self.gained -= min(released, 0.0)
@@ -336,6 +340,7 @@ class Run:
             contact_radius=records["edge"],
             axis_deformation=records["axis"],
             viscous_power=records["loss"],
+            viscous_energy=records["lost"],
             pieces=tuple(slice(int(a), int(b)) for a, b in zip(starts, ends, strict=True)),
             motion=self.motion,
             jump_time=time[jumped],

@@ -1,22 +1,73 @@
 """A step solved: surface and lever in equilibrium, in a frame given or together with its edge."""
 
+from numba import int64, types
+
 from softafm.compiled.dense import solve_factorised
-from softafm.compiled.functions import inline
+from softafm.compiled.functions import (
+    HEIGHT,
+    INTERNAL,
+    PRESSURE,
+    PROFILE,
+    compile_for,
+    inline,
+    pointer_to,
+)
 from softafm.solvers.energy.equilibrium import equilibrate
-from softafm.solvers.energy.layout import LOAD, LOAD_EARLIER, ORIGIN
+from softafm.solvers.energy.layout import (
+    BACKGROUND,
+    CLOCK,
+    CONTROLS,
+    LOAD,
+    LOAD_EARLIER,
+    MATRIX,
+    MESH,
+    ORIGIN,
+    PARAMETERS,
+    PIVOTS,
+    ROOM,
+    TABLE,
+)
 from softafm.solvers.energy.memory import NEW
-from softafm.solvers.energy.proposal import Trial, carry_past, find_extrapolation_weights
+from softafm.solvers.energy.proposal import (
+    TRIAL,
+    Trial,
+    carry_past,
+    find_extrapolation_weights,
+    furnish,
+)
 from softafm.solvers.energy.riding import lay_phase, ride
 from softafm.solvers.energy.stiffness import find_stiffness
 from softafm.solvers.energy.tracing import trace
 from softafm.solvers.energy.tuning import CLOSEST, MOST_REFRAMES, RIDING_ERROR
 
 STABLE, UNSTABLE, UNKNOWN = 1, 0, -1
+SOLUTION = types.Tuple((TRIAL, int64))
+
+KEEPS, RIDES, TRACES = 0, 1, 2
+"""How a trial ``rides``: the frame is kept, solved for, or solved for with a memory that rides."""
 
 
 @inline
-def solve(trial, law, parameters, mesh, controls, clock, work):
-    """Bring surface and lever into equilibrium, with the load; whether a stable shape was near."""
+def solve(
+    trial, height, profile, law, parameters, background, mesh, table, controls, fields, clock, work,
+    room, pivots,
+):  # fmt: skip
+    """Bring a trial into equilibrium; returns it in the frame found, and STABLE or what else."""
+    if trial.rides == TRACES:
+        return solve_tracing(
+            trial, profile, law, parameters, background, mesh, controls, fields, clock, room, pivots
+        )  # fmt: skip
+    if trial.rides == RIDES:
+        return solve_riding(
+            trial, height, profile, law, parameters, background, mesh, table, controls, fields,
+            clock, room,
+        )  # fmt: skip
+    return trial, solve_kept(trial, law, parameters, mesh, controls, clock, work)
+
+
+@inline
+def solve_kept(trial, law, parameters, mesh, controls, clock, work):
+    """Bring surface and lever into equilibrium, with the load, in the frame of the trial."""
     iterations = equilibrate(
         work.u, work.v, trial.frame * trial.compliance, work.standoff, trial.lever, trial.rest,
         work.rise, mesh, law, parameters.law, CLOSEST * controls.edge_gap, controls.newton,
@@ -26,7 +77,7 @@ def solve(trial, law, parameters, mesh, controls, clock, work):
     if iterations > 0:
         for i in range(mesh.nodes.size):
             work.load_new[i] = (work.v[i] - work.u[i]) / trial.compliance
-    return iterations > 0
+    return STABLE if iterations > 0 else UNSTABLE
 
 
 @inline
@@ -42,15 +93,22 @@ def find_slide(v, mesh, frame, slide):
         slide[i] = -v[i] / frame
 
 
-@inline
+@compile_for(
+    SOLUTION(
+        TRIAL, pointer_to(HEIGHT), pointer_to(PROFILE), pointer_to(PRESSURE), PARAMETERS,
+        BACKGROUND, MESH, TABLE, CONTROLS, MATRIX, CLOCK, ROOM,
+    ),
+    **INTERNAL,
+)  # fmt: skip
 def solve_riding(
-    trial, height, profile, law, parameters, background, mesh, table, controls, fields, clock, work
+    trial, height, profile, law, parameters, background, mesh, table, controls, fields, clock, room
 ):  # fmt: skip
     """As ``solve``, with the edge, from a guess whose gaps are left in ``work.shape``.
 
     Returns the trial in the frame found, and STABLE, UNSTABLE, or UNKNOWN if the stiffness in
     ``clock.wanted`` is to be tabulated.
     """
+    work = furnish(room)
     n, elements = mesh.nodes.size, parameters.retardation.size
     slide, kept = work.strained[0] if elements > 0 else work.scratch, work.riding[2, :n]
     for i in range(n):
@@ -98,12 +156,18 @@ def solve_riding(
     return found, outcome
 
 
-@inline
+@compile_for(
+    SOLUTION(
+        TRIAL, pointer_to(PROFILE), pointer_to(PRESSURE), PARAMETERS, BACKGROUND, MESH, CONTROLS,
+        MATRIX, CLOCK, ROOM, PIVOTS,
+    ),
+    **INTERNAL,
+)  # fmt: skip
 def solve_tracing(
-    trial, profile, law, parameters, background, mesh, controls, fields, clock, work, room,
-    pivots,
+    trial, profile, law, parameters, background, mesh, controls, fields, clock, room, pivots
 ):  # fmt: skip
     """As ``solve_riding``, with a memory that rides too."""
+    work = furnish(room)
     n, elements = mesh.nodes.size, parameters.retardation.size
     known = min(int(clock.rides), trial.history)
     for i in range(n):

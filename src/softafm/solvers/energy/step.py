@@ -57,13 +57,13 @@ from softafm.solvers.energy.memory import (
 )  # fmt: skip
 from softafm.solvers.energy.proposal import choose_step, furnish, propose
 from softafm.solvers.energy.solution import (
-    STABLE,
+    KEEPS,
+    RIDES,
+    TRACES,
     UNKNOWN,
     UNSTABLE,
     find_response,
     solve,
-    solve_riding,
-    solve_tracing,
 )
 from softafm.solvers.energy.stiffness import find_stiffness
 from softafm.solvers.energy.tracing import answer_shift
@@ -77,9 +77,6 @@ from softafm.solvers.energy.tuning import (
     RETRIED,
     SAFETY,
 )  # fmt: skip
-
-TRACES = 2
-"""How a trial ``rides`` whose memory does, too."""
 
 
 @inline
@@ -160,9 +157,10 @@ def accept(
     # left none that is sharp.
     anew = edge >= AS_WIDE * clock.widest or trial.rides == TRACES
     clock.widest = max(clock.widest, edge)
-    carry_lag_energy(
-        frame, anew, work.weights, work.left, work.lags, work.strained, mesh.stiffness, lag_energy
-    )
+    record.lost = carry_lag_energy(
+        parameters.compliance, parameters.retardation, trial.step, frame, anew, work.weights,
+        work.left, work.lags, work.strained, mesh.stiffness, lag_energy,
+    )  # fmt: skip
     move_clock(clock, trial.step, frame, edge, force, work.u[n])
     clock.step = max(
         trial.step * min(MOST_GROWTH, max(LEAST_GROWTH, growth)), 0.999 * controls.shortest_step
@@ -182,18 +180,29 @@ def accept(
 
 
 @inline
-def may_ride(clock, controls):
-    """Whether the next step solves for the edge too: 1 if so."""
+def choose_ride(step, parameters, clock, mesh, controls):
+    """Frame of the next step, and whether it is solved for: KEEPS, RIDES, or TRACES, in which the
+    memory rides, too, as the edge will move far."""
     known = clock.history > 1.0 or clock.rides > 0.0
-    return 1 if known and clock.edge > controls.ride_from else 0
+    if not (known and clock.edge > controls.ride_from):
+        return follow_edge(step, clock, mesh, controls), KEEPS
+    frame = foresee_frame(step, clock)
+    moved = abs(frame - clock.frame) / (mesh.edge_spacing * frame)
+    unknown = clock.history < 2.0 and controls.trace_from < inf
+    far = clock.rides > 0.0 and (unknown or moved > controls.trace_from)
+    return frame, TRACES if far and parameters.retardation.size > 0 else RIDES
 
 
 @inline
-def may_trace(frame, clock, mesh, controls):
-    """Whether the edge will move so far in a riding step that the memory has to ride, too."""
-    moved = abs(frame - clock.frame) / (mesh.edge_spacing * frame)
-    unknown = clock.history < 2.0 and controls.trace_from < inf
-    return clock.rides > 0.0 and (unknown or moved > controls.trace_from)
+def find_force(trial, law, parameters, mesh, work):
+    """Force on the tip, N: that of a lever's own balance, if it bends, but for what that misses."""
+    n = mesh.nodes.size
+    if trial.lever > 0.0:
+        return 2.0 * pi * trial.frame**2 * trial.lever * (work.u[n] - trial.rest)
+    return tip_force(
+        work.newton[1, :n], work.newton[0, :n], work.rise, mesh, trial.frame, law,
+        parameters.law, work.far,
+    )  # fmt: skip
 
 
 @compile_for((CLOCK, float64, float64, float64, float64, float64))
@@ -239,13 +248,7 @@ def advance(
         if clock.tries >= controls.most_tries:
             return STUCK, count
         step = choose_step(clock, controls, left)
-        rides = may_ride(clock, controls)
-        if rides > 0:
-            frame = foresee_frame(step, clock)
-            if parameters.retardation.size > 0 and may_trace(frame, clock, mesh, controls):
-                rides = TRACES
-        else:
-            frame = follow_edge(step, clock, mesh, controls)
+        frame, rides = choose_ride(step, parameters, clock, mesh, controls)
         if frame != tabulated:
             if not find_stiffness(table, frame):
                 clock.wanted = frame
@@ -256,21 +259,11 @@ def advance(
             step, frame, rides, height, profile, respond, parameters, background, mesh, fields,
             clock, lever_state, work,
         )  # fmt: skip
-        if rides == TRACES:
-            trial, found = solve_tracing(
-                trial, profile, law, parameters, background, mesh, controls, fields, clock, work,
-                room, pivots,
-            )  # fmt: skip
-            tabulated = -1.0
-        elif rides > 0:
-            trial, found = solve_riding(
-                trial, height, profile, law, parameters, background, mesh, table, controls, fields,
-                clock, work,
-            )  # fmt: skip
-            tabulated = trial.frame
-        else:
-            stable = solve(trial, law, parameters, mesh, controls, clock, work)
-            found = STABLE if stable else UNSTABLE
+        trial, found = solve(
+            trial, height, profile, law, parameters, background, mesh, table, controls, fields,
+            clock, work, room, pivots,
+        )  # fmt: skip
+        tabulated = trial.frame
         if found == UNKNOWN:
             return TABULATE, count
         if found == UNSTABLE:
@@ -278,13 +271,7 @@ def advance(
                 return FALL, count
             clock.step = max(RETRIED * step, 0.999 * shortest)
             continue
-        force = tip_force(
-            work.newton[1, :n], work.newton[0, :n], work.rise, mesh, trial.frame, law,
-            parameters.law, work.far,
-        )  # fmt: skip
-        if trial.lever > 0.0:
-            # The lever's own is the same but for what the balance misses.
-            force = 2.0 * pi * trial.frame**2 * trial.lever * (work.u[n] - trial.rest)
+        force = find_force(trial, law, parameters, mesh, work)
         error = judge(trial, force, parameters, mesh, controls, clock, work, room, pivots)
         growth = SAFETY * max(error, 1e-6) ** (-1.0 / trial.history)
         if error > REFUSED and step > shortest:

@@ -1,6 +1,6 @@
 """The surface of the energy solver between calls of its compiled loop: mesh, fields, clock."""
 
-from math import ceil, inf, log2, sqrt
+from math import ceil, inf, isinf, log2, sqrt
 from typing import Any
 
 import numpy as np
@@ -70,7 +70,9 @@ class Surface:
         compliance = contact.body.compliance.chain(breaks[-1] - breaks[0])
         # An edge of a slack contact is faster than the tip by about the Tabor number.
         fastest = motion.top_speed * max(1.0, contact.tabor_softened)
-        compliance = compliance.without_faster(AT_ONCE * strictness * contact.reach / fastest)
+        compliance = compliance.without_faster(
+            AT_ONCE * min(strictness, 1.0) * contact.reach / fastest
+        )
         height, height_parameters = motion.compiled_height
         profile, tip_parameters = contact.tip.compiled_profile
         law, potential, law_parameters = contact.surface.compiled_pressure
@@ -105,8 +107,8 @@ class Surface:
         tabor = contact.tabor_after(breaks[-1] - breaks[0]) if contact.adhesive else 0.0
         slack = free and tabor > SLACK
         self.ride_from = RIDE_FROM * self.open_frame if slack else inf
-        # What a steady cycle gathers is filtered at fixed radii.
-        traced = free and tabor > SLACKER and not is_steady(motion)
+        # What a steady cycle gathers is filtered at fixed radii, and a trace knows one stiffness.
+        traced = free and tabor > SLACKER and not is_steady(motion) and isinf(contact.body.length)
         self.trace_from = TRACE_FROM if traced else inf
         period = float(breaks[-1] - breaks[0])
         self.too_slow = TOO_SLOW[1 if is_steady(motion) else 0] * period
@@ -349,7 +351,7 @@ class Surface:
         spacing = frame * mesh.edge_spacing
         coarseness = spacing / max(zone, 1e-9 * frame) if edge else 0.0
         height = h0 + clock["deflection"]
-        return self.time, height, force, edge, u[0], loss, coarseness, frame, 0.0
+        return self.time, height, force, edge, u[0], loss, 0.0, coarseness, frame, 0.0
 
     def energy(self) -> float:
         """Energy of the contact as an instantaneous elastic one, to infinity, and the lever, J."""

@@ -19,7 +19,7 @@ from math import asinh, exp, sqrt
 from numba import float64, int64
 
 from softafm.compiled.dense import factorise_general, multiply, solve_general
-from softafm.compiled.functions import PRESSURE, PROFILE, compile_for, inline, pointer_to
+from softafm.compiled.functions import INTERNAL, PRESSURE, PROFILE, compile_for, inline, pointer_to
 from softafm.solvers.energy.equilibrium import integrate_beyond_mesh, raise_tip
 from softafm.solvers.energy.layout import (
     BACKGROUND,
@@ -297,6 +297,7 @@ def _change_gaps(instant, mesh, room, last, out):
         VECTOR, VECTOR, VECTOR, VECTOR, MATRIX, BACKGROUND, MESH, MATRIX, CLOCK, float64, float64,
         float64, VECTOR, VECTOR, MATRIX, MATRIX, ROOM, PIVOTS,
     ),
+    **INTERNAL,
 )  # fmt: skip
 def trace(
     step, guessed_frame, base, spring, rest, profile, law,
@@ -366,7 +367,7 @@ def trace(
     return -MOST_ITERATIONS
 
 
-@compile_for((VECTOR, float64, float64, int64, MESH, VECTOR, ROOM, PIVOTS))
+@compile_for((VECTOR, float64, float64, int64, MESH, VECTOR, ROOM, PIVOTS), **INTERNAL)
 def answer_shift(shift, instant, frame, bends, mesh, gaps, room, pivots):
     """Change of the gaps, into ``gaps``, by a small ``shift`` of the surface away from the tip, m.
 
