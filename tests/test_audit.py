@@ -108,7 +108,11 @@ def test_a_motion_that_ends_in_contact_on_purpose_is_no_problem():
 
 
 def test_energy_that_nothing_accounts_for_is_warned_of(history):
-    halved = replace(history, viscous_power=0.5 * history.viscous_power)
+    halved = replace(
+        history,
+        viscous_power=0.5 * history.viscous_power,
+        viscous_energy=0.5 * history.viscous_energy,
+    )
     (problem,) = audit(CONTACT, halved, 1e-2).problems
     assert "energy is not balanced" in str(problem)
     assert re.search("1.0[0-9]+ aJ of work was done, 0.52[0-9]+ aJ went into dash", str(problem))
