@@ -259,6 +259,13 @@ STEADY = 1e-2
 """How far off the memory may start, in gaps of the contact edge, in a cycle that counts as steady,
 at a tolerance of 1e-2: what the errors of a cycle leave."""
 
+SURELY_STEADY = 1e-4
+"""The same below which a cycle is steady, whatever the forces of the one before."""
+
+MUCH_SLOWER = 4.0
+"""Compliance that a steady cycle finds as it was left, in that which acts within the cycle, beyond
+which the dent is sought by Newton's method."""
+
 STAGNANT = 8
 """Cycles in which the start must become twice as good, or all that is left are errors."""
 
