@@ -4,10 +4,11 @@ Memory that creeps slowly hardly changes over a cycle: the surface lies where th
 cycle holds it. A sample that hardly gives way at once answers a dent by pressures that are steep in
 it, and cycles that start from what the last one left would throw it to and fro by many gaps.
 
-A change of memory δy_m is felt in the middle of a cycle, where the contact is, as v = Σ J_m c_m δy_m
-with c_m = e^(−T/2τ_m). At an instant it changes the load by −(1 + J K D)⁻¹ K D v, where D = −p' is
-the steepness of the surface forces and J what gives way within the cycle; the mean of that over the
-cycle changes what the elements gain. Attraction is left out, so that the dent goes downhill.
+A change of memory δy_m is felt in the middle of a cycle, where the contact is, as
+v = Σ J_m c_m δy_m with c_m = e^(−T/2τ_m). At an instant it changes the load by
+−(1 + J K D)⁻¹ K D v, where D = −p' is the steepness of the surface forces and J what gives way
+within the cycle; the mean of that over the cycle changes what the elements gain. Attraction is left
+out, so that the dent goes downhill.
 """
 
 from typing import TYPE_CHECKING
@@ -23,9 +24,12 @@ if TYPE_CHECKING:
     from softafm.solvers.energy.surface import Surface
     from softafm.solvers.shapes import Shape
 
-_LARGEST = 1.0
-"""Step of Newton's method, in gaps."""
-_BACK, _SMALLEST_PART = 0.3, 1e-3
+_LARGEST = 4.0
+"""Step of Newton's method at first, in gaps."""
+_BACK, _MOST_BACK = 0.3, 3
+"""How far back a step goes that made the misses larger, and how often before another way is tried."""
+_NEAR = 0.05
+"""Misses, in gaps, that are not looked back at: they are errors of the cycles, too."""
 _LOOKS = 80
 """Instants of a cycle at which the contact is looked at."""
 
@@ -43,7 +47,8 @@ class Dent:
         self._gained = part * self._felt / self._gaining[:, 0]
         self._slow = float(self._compliances @ (self._felt * self._gained))
         self._fast = float(compliance.sum()) - self._slow
-        self._last, self._part = np.inf, 1.0
+        self._last, self._part, self._largest = np.inf, 1.0, _LARGEST
+        self._backs, self._attracted = 0, False
         self._start = self._step = np.empty(0)
 
     @property
@@ -87,14 +92,19 @@ class Dent:
         """
         miss = gained / self._gaining - start
         raw, unit = self._measure(miss), self._surface.edge_gap
-        if raw > self._last and self._part > _SMALLEST_PART:  # too far: go back part of the way
+        if raw > max(self._last, _NEAR * unit) and self._backs < _MOST_BACK:  # too far: go back
+            self._backs += 1
             self._part *= _BACK
-            return self._start + self._part * self._step, max(raw, unit)
+            self._largest = max(_BACK * self._largest, 1.0)
+            return self._start + self._part * self._step, raw
+        if self._backs == _MOST_BACK:
+            self._attracted = not self._attracted
+        self._backs = 0
         answer = self._answer(records, shapes)
         step = self._solve(answer, miss)
         off = self._measure(step)
         self._start, self._last = start, raw
-        self._part = min(1.0, _LARGEST * unit / max(off, 1e-300))
+        self._part = min(1.0, self._largest * unit / max(off, 1e-300))
         self._step = step
         return start + self._part * step, min(raw, off)
 
@@ -103,7 +113,7 @@ class Dent:
         return float(np.abs(self._compliances @ memory).max())
 
     def _solve(self, answer: np.ndarray, miss: np.ndarray) -> np.ndarray:
-        """Return δy of δy_m = miss_m − b_m A v, where b_m tells what is gained of a changed load."""
+        """Return δy of δy_m = miss_m − b_m A v, b_m what is gained of a change of load."""
         felt = (self._compliances * self._felt) @ miss
         v = np.linalg.solve(np.eye(felt.size) + self._slow * answer, felt)
         return miss - self._gained[:, None] * (answer @ v)
@@ -119,10 +129,12 @@ class Dent:
         near = np.flatnonzero(records["axis"] - records["height"] > -self._surface.open_gap)
         every = max(1, near.size // _LOOKS)
         answer = np.zeros((radius.size, radius.size))
-        for i in near[:: every]:
+        for i in near[::every]:
             shape = shapes[i]
             displaced = np.interp(radius, shape.frame * shape.mesh.nodes, shape.deformation)
-            steep = np.fmax(-law.slope(records["height"][i] + tip - displaced), 0.0)
+            steep = -law.slope(records["height"][i] + tip - displaced)
+            if not self._attracted:
+                steep = np.fmax(steep, 0.0)
             pushed = np.diag(frame * mesh.masses * steep)
             part = every * widths[i] / self._period
             answer += part * np.linalg.solve(stiffness + self._fast * pushed, pushed)

@@ -215,9 +215,10 @@ def _snap_in(surface: "Surface") -> tuple[float, ...] | None:
         )  # fmt: skip
     surface.fields = fields
     surface.clock["frame"] = radius
-    surface.clock["deflection"] = height - landing.base
+    surface.clock["deflection"] = height - landing.base if surface.bends else 0.0
     record = surface.take(shape, v)
     surface.clock["edge"] = surface.clock["edge_earlier"] = radius
+    surface.clock["felt"] = surface.clock["felt_earlier"] = radius
     surface.clock["rides"] = 1.0
     return record
 

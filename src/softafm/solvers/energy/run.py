@@ -99,6 +99,7 @@ class Run:
         )
         self.target = self.surface.target
         self.records, self.count = np.empty(2 * _CHUNK, RECORD_FIELDS), 0
+        self.keep_shapes = keep_shapes
         self.shapes: list[Shape] | None = [] if keep_shapes else None
         self.coarsest = 0.0, 0.0
         self.slips, self.end_of_slip = 0, -np.inf
@@ -164,12 +165,15 @@ class Run:
         periodic = PeriodicMemory(period, elements, times, surface.edge_gap)
         if times.max(initial=0) > period:  # small errors of a cycle add up
             surface.clock["contraction"] = np.inf
-        memory, misses, forces = None, [], None
-        dent = Dent(surface, period) if elements.size else None
-        ruled = dent is not None and dent.rules
-        if ruled and (memory := dent.guess(self._lowest_time())) is not None:
-            surface.remember(memory)
-        shapes, self.shapes = self.shapes, [] if ruled else self.shapes
+        memory: np.ndarray | None = None
+        forces: np.ndarray | None = None
+        misses: list[float] = []
+        dent = Dent(surface, period)
+        shapes: list[Shape] = self.shapes or []
+        if dent.rules:
+            self.shapes = shapes
+            if (memory := dent.guess(self._lowest_time())) is not None:
+                surface.remember(memory)
         for self.cycle in range(1, MOST_CYCLES + 1):
             self.count = 0
             self.falls.clear()
@@ -181,9 +185,9 @@ class Run:
             surface.clock["widest"] = self.records[: self.count]["edge"].max()
             gained = surface.rewind(start)
             memory = np.zeros_like(gained) if memory is None else memory
-            if ruled:
+            if dent.rules:
                 records = self.records[: self.count]
-                memory, off = dent.next_start(memory, gained, records, self.shapes)
+                memory, off = dent.next_start(memory, gained, records, shapes)
             else:
                 memory, off = periodic.next_start(memory, gained)
             self.unsteady = off / surface.edge_gap
@@ -193,7 +197,7 @@ class Run:
             steady = self.unsteady <= self.steadiness
             steady &= self.unsteady < SURELY_STEADY or _are_near(forces, before, self.strictness)
             if not caught and (steady or _stagnates(misses)):
-                self.unsteady = max(self.unsteady, _scatter(misses))
+                self.unsteady = max(self.unsteady, 0.0 if dent.rules else _scatter(misses))
                 return
             surface.remember(memory)
 
@@ -363,7 +367,7 @@ class Run:
             motion=self.motion,
             jump_time=time[jumped],
             jump_energy=records["jump"][jumped],
-            profiles=None if self.shapes is None else interpolate_to_common_radii(self.shapes),
+            profiles=interpolate_to_common_radii(self.shapes or []) if self.keep_shapes else None,
             diagnostics={
                 "steps": time.size - 1,
                 "attempted_steps": int(surface.clock["tries"]),
@@ -393,7 +397,8 @@ def _are_near(forces: np.ndarray, before: np.ndarray | None, strictness: float) 
     if before is None:
         return False
     least = 0.01 * np.abs(forces).max()
-    return bool((np.abs(forces - before) <= 5e-3 * strictness * np.fmax(np.abs(forces), least)).all())
+    allowed = 5e-3 * strictness * np.fmax(np.abs(forces), least)
+    return bool((np.abs(forces - before) <= allowed).all())
 
 
 def _stagnates(misses: list[float]) -> bool:

@@ -158,6 +158,11 @@ GROWTH = 0.3
 """Logarithmic growth of the spacing a node away from the edge (``softafm docs performance``, "What
 did not help": 0.45 slips in slack contacts)."""
 
+APEX, FINEST_GROWTH = 2.5, 0.6
+"""Radius of a round apex, in that of the contact, times the first is the part of that growth that
+a tip sharper than a paraboloid gets, down to the second (the pull-off of a cone pressed to nine
+times its apex was 4.8 % off)."""
+
 SLACK = 6.0
 """Tabor number of the softened sample from which on the edge of a contact yields to small errors,
 so that it is solved for together with the surface."""
@@ -174,10 +179,10 @@ FINEST_TARGET = 0.02
 PREDICTION_ERROR = 0.03
 """Largest error of the extrapolated shape, relative to the gap, at a tolerance of 1e-2."""
 
-MEMORY_ERROR = 0.01
+MEMORY_ERROR = 0.005
 """Largest error of the memory in a step, relative to the gap, at that tolerance."""
 
-FORCE_ERROR = 0.01
+FORCE_ERROR = 0.0075
 """Largest error of the extrapolated force, relative to itself or to the largest attraction so far,
 if that is more, at that tolerance. Where it has fallen again, the largest repulsion is no measure:
 it may be a thousand times the pull-off."""
