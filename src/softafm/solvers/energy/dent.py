@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 _LARGEST = 4.0
 """Step of Newton's method at first, in gaps."""
 _BACK, _MOST_BACK = 0.3, 3
-"""How far back a step goes that made the misses larger, and how often before another way is tried."""
+"""How far back a step goes that made the misses larger; how often, before another way is tried."""
 _NEAR = 0.05
 """Misses, in gaps, that are not looked back at: they are errors of the cycles, too."""
 _LOOKS = 80

@@ -43,6 +43,7 @@ from softafm.solvers.energy.tuning import (
     FINER_THAN_NEEDED,
     FINEST_GROWTH,
     GROWTH,
+    GROWTH_IF_FAR_SOFTER,
     HARDLY_SOFTER,
     HELD,
     HELD_IF_FAR_SOFTER,
@@ -103,19 +104,22 @@ class Surface:
         sharpness = contact.surface.sharpness if contact.adhesive else 1.0
         self.target = SPACING * at_least**0.2 / max(1.0, sharpness)
         self.growth = GROWTH * min(1.0, strictness**0.17) * find_fineness(contact, motion)
+        period = float(breaks[-1] - breaks[0])
+        duration = inf if is_steady(motion) else period
+        if find_softening(self.parameters, duration) > FAR_SOFTER:
+            # No elastic answer evens out what the nodes do not resolve.
+            self.growth = min(self.growth, GROWTH_IF_FAR_SOFTER)
         # Where the tip rises steeply, at the rim of a punch, it holds the edge; and a sample that
         # is all memory parts evenly, without an edge.
         free = contact.open_width > STEEP * self.open_frame
-        free = free and find_softening(self.parameters, breaks[-1] - breaks[0]) < FAR_SOFTER
-        tabor = contact.tabor_after(breaks[-1] - breaks[0]) if contact.adhesive else 0.0
+        free = free and find_softening(self.parameters, period) < FAR_SOFTER
+        tabor = contact.tabor_after(period) if contact.adhesive else 0.0
         slack = free and tabor > SLACK
         self.ride_from = RIDE_FROM * self.open_frame if slack else inf
         # What a steady cycle gathers is filtered at fixed radii, and a trace knows one stiffness.
         traced = free and tabor > SLACKER and not is_steady(motion) and isinf(contact.body.length)
         self.trace_from = TRACE_FROM if traced else inf
-        period = float(breaks[-1] - breaks[0])
         self.too_slow = TOO_SLOW[1 if is_steady(motion) else 0] * period
-        duration = inf if is_steady(motion) else period
         self.held = choose_spacing_held(self.parameters, duration)
         self.finest_level = max(0, ceil(log2(COARSEST_SPACING / finest_spacing)))
         self.level = self.first_level = self.find_level(0.4 * contact.open_width / self.open_frame)
