@@ -51,7 +51,6 @@ from softafm.solvers.energy.tuning import (
     SLACK,
     SLACKER,
     SPACING,
-    STEEP,
     TOO_SLOW,
     TRACE_FROM,
 )
@@ -111,8 +110,7 @@ class Surface:
             self.growth = min(self.growth, GROWTH_IF_FAR_SOFTER)
         # Where the tip rises steeply, at the rim of a punch, it holds the edge; and a sample that
         # is all memory parts evenly, without an edge.
-        free = contact.open_width > STEEP * self.open_frame
-        free = free and find_softening(self.parameters, period) < FAR_SOFTER
+        free = not contact.steep and find_softening(self.parameters, period) < FAR_SOFTER
         tabor = contact.tabor_after(period) if contact.adhesive else 0.0
         slack = free and tabor > SLACK
         self.ride_from = RIDE_FROM * self.open_frame if slack else inf

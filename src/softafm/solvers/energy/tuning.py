@@ -89,10 +89,6 @@ it is; of the period in steady cycles, where the element gathers the mean of the
 
 # The frame that rides on the contact edge.
 
-STEEP = 0.05
-"""Width over which a tip rises from one to two ranges of the attraction, in radii of the open
-contact, below which its edge stays there (paraboloids have 0.4, cones 0.9, punches 0)."""
-
 RIDE_FROM = 0.25
 """Radius of the edge, in radii of the open contact, beyond which a slack contact is solved together
 with it."""
