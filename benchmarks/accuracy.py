@@ -31,6 +31,8 @@ import numpy as np
 
 import softafm as sa
 from softafm.experiment.regime import estimate_seconds
+from softafm.modes import MODES
+from softafm.modes.regularise import regularise_contact
 
 FORCES = ("force_max", "force_min", "force_min_approach", "force_mean")
 ENERGIES = ("loop_energy", "virial", "dissipation", "viscous_loss")
@@ -117,10 +119,7 @@ def compare(experiment, found: dict, truth: dict) -> dict[str, float]:
     if experiment.mode == "approach-curve":
         amplitude = experiment.motion.free_amplitude * np.array(experiment.motion.amplitude_ratio)
         return compare_solutions(value, exact, 0.02 * force * 0.02 * amplitude)
-    contact = experiment.contact
-    if experiment.regularise is not None:
-        contact = contact.regularised(experiment.regularise)
-    length = contact.reach
+    length = find_computed(experiment).reach
     if experiment.mode == "tapping-cycle":
         length = 0.02 * experiment.motion.amplitude
     least = dict.fromkeys(FORCES, 0.01 * force) | dict.fromkeys(ENERGIES, 0.02 * force * length)
@@ -128,6 +127,13 @@ def compare(experiment, found: dict, truth: dict) -> dict[str, float]:
         name: float(np.abs(value[name] - exact[name]) / max(np.abs(exact[name]), least[name]))
         for name in value
     }
+
+
+def find_computed(experiment) -> sa.Contact:
+    """Return the contact that is computed, regularised or not."""
+    return regularise_contact(
+        experiment.contact, experiment.regularise, MODES[experiment.mode], experiment.motion
+    )
 
 
 def compare_solutions(value: dict, exact: dict, least: np.ndarray) -> dict[str, float]:
@@ -154,7 +160,7 @@ def measure(runner: Runner, seed: int, tolerance: float, limit: float) -> dict:
     entry = {
         "seed": seed, "tolerance": tolerance, "mode": experiment.mode, "tip": contact.tip.kind,
         "law": contact.surface.kind, "sample": contact.sample.kind, "error": None,
-        "tabor": contact.tabor_softened, "regularised": experiment.regularise is not None,
+        "tabor": contact.tabor_softened, "regularised": find_computed(experiment) is not contact,
         "expected": estimate_seconds(experiment), **runner.run(seed, tolerance, limit),
     }  # fmt: skip
     if "values" not in entry:

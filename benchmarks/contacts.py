@@ -79,7 +79,7 @@ def ramp(random: Random) -> Experiment | None:
     if contact.tabor_softened > SOFTEST:
         return None
     number = choose_number(random, contact)
-    touched = contact if number is None else contact.regularised(number)
+    touched = contact if number == "auto" else contact.regularised(number)
     neck = neck_of(touched)
     if neck > 0.5 * contact.effective_radius:
         return None
@@ -211,10 +211,10 @@ def draw_sample(random: Random, modulus: float, duration: float) -> rheology.Sol
     )  # fmt: skip
 
 
-def choose_number(random: Random, contact: sa.Contact) -> float | None:
-    """Return the Tabor number to which a contact is regularised, if it is."""
+def choose_number(random: Random, contact: sa.Contact) -> float | str:
+    """Return the Tabor number to which a contact is regularised, or "auto"."""
     soft = contact.tabor_softened > SOFT and random.uniform(0, 1) < 0.5
-    return 8.0 if soft and not isinstance(contact.surface, sa.DLVO) else None
+    return 8.0 if soft and not isinstance(contact.surface, sa.DLVO) else "auto"
 
 
 def depth_of(contact: sa.Contact, force: float) -> float:

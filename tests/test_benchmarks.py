@@ -48,7 +48,7 @@ def test_ramps_start_out_of_contact_and_can_end_there(drawn):
     for experiment in drawn:
         if experiment.mode in ("force-distance", "force-spectroscopy"):
             contact = experiment.contact
-            if experiment.regularise is not None:
+            if experiment.regularise != "auto":
                 contact = contact.regularised(experiment.regularise)
             assert contact.contact_radius(experiment.motion.start) == 0
             assert experiment.motion.start > contact.edge_gap + 10 * contact.reach

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from scipy.special import ellipe, ellipk
+from scipy.special import ellipe, ellipk, i0e
 
 import softafm as sa
 from softafm.solvers.periodic import PeriodicMemory
@@ -284,6 +284,34 @@ def test_a_tap_that_starts_in_contact(mean_height, periods):
     assert float(result["contact_time"]) > 0.7 * PERIOD
 
 
+@pytest.mark.parametrize("mean_height", [-2e-9, 2e-9])
+def test_a_sample_that_hardly_moves_in_a_cycle_carries_the_mean_pressure(mean_height):
+    """Over a sine an exponential is in the mean one of the same decay, higher up by λ ln I₀(A/λ).
+
+    The mean force is that of an elastic contact at rest under such a law, at the mean height.
+    """
+    tip, law, amplitude = sa.Paraboloid(20e-9), sa.Repulsion(1e8, 0.5e-9), 5e-9
+    tap = sa.tapping_cycle(
+        sa.Contact(tip, sa.KelvinVoigt(1e6, 10.0, 0.4), law), amplitude, mean_height, 1e5
+    )
+    lift = amplitude + law.decay * np.log(i0e(amplitude / law.decay))
+    rest = sa.Contact(tip, sa.Elastic(1e6, 0.4), law)
+    pressed = sa.force_distance(rest, sa.Triangle(20e-9, mean_height - lift, 1e-6), tolerance=1e-3)
+    assert float(tap.force_mean) == pytest.approx(float(pressed.force_max), rel=2e-3)
+    assert float(tap.cycles_run) < 15
+
+
+def test_a_slow_sample_that_adheres_finds_its_steady_cycle():
+    """Repeated cycles throw it to and fro by many gaps."""
+    contact = sa.Contact(
+        sa.Hyperboloid(30e-9, 0.6), sa.KelvinVoigt(1e7, 1.0, 0.3), sa.Morse(0.002, 3e-10, 1e-10)
+    )
+    tap = sa.tapping_cycle(contact, 5e-9, 3e-9, 1e5)
+    finer = sa.tapping_cycle(contact, 5e-9, 3e-9, 1e5, tolerance=1e-3)
+    for name in ("force_max", "force_min", "force_mean", "virial", "viscous_loss"):
+        assert float(tap[name]) == pytest.approx(float(finer[name]), rel=0.01), name
+
+
 # The accelerator by itself
 
 
@@ -380,6 +408,7 @@ def test_an_elastic_tap_that_never_comes_off_is_steady_only_once_it_is_caught():
     assert float(tap.dissipation) == 0
 
 
+@pytest.mark.filterwarnings("ignore:audit")  # which is right, too
 def test_cycles_that_find_no_steady_state_are_warned_of(monkeypatch):
     from softafm.solvers.energy import run as energy_run
 

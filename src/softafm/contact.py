@@ -11,7 +11,7 @@ from softafm.bodies import Body
 from softafm.bodies.body import body_of
 from softafm.bodies.check import check_body
 from softafm.checks.kinds import is_built_in, refuse_other
-from softafm.checks.validate import check_tabor
+from softafm.checks.validate import LARGEST_TABOR, check_tabor
 from softafm.rheology import Solid
 from softafm.rheology.check import check_compliance, check_sample
 from softafm.surfaces import SurfaceLaw
@@ -23,6 +23,10 @@ from softafm.tips.check import check_tip
 _ZOOMS, _POINTS = 9, 33
 _ROUGH = 0.1
 """Largest error of a least depth on radii 15 % apart, relative: ten times that of a paraboloid."""
+_STEEP, _LARGEST_OF_STEEP = 0.05, 20.0
+"""Width over which a tip rises from one to two ranges of the attraction, in radii of the open
+contact, below which its edge stays there (paraboloids have 0.4, cones 0.9, punches 0), and the
+Tabor number up to which the solver can follow such a contact."""
 _SOFT = 1e-4
 """Share of the modulus to which the repulsion of a law without attraction falls at the edge."""
 _MOST_STRETCHES, _SAME = 60, 1e-9
@@ -145,6 +149,16 @@ class Contact:
     def open_width(self) -> float:
         """Width of the zone there in which the gap opens, m."""
         return self.tip.radius_at(2 * self.reach) - self.tip.radius_at(self.reach)
+
+    @property
+    def largest_tabor(self) -> float:
+        """Tabor number up to which the default solver can follow the edge: less if it is steep."""
+        return _LARGEST_OF_STEEP if self.steep else LARGEST_TABOR
+
+    @cached_property
+    def steep(self) -> bool:
+        """Whether the tip rises so steeply, as at the rim of a punch, that it holds the edge."""
+        return self.open_width <= _STEEP * self.open_radius
 
     @cached_property
     def force_scale(self) -> float:

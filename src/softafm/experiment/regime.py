@@ -6,7 +6,6 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from softafm.checks.validate import LARGEST_TABOR
 from softafm.draw.summary import describe_misfit, describe_regularisation, describe_slowing
 from softafm.experiment.run import Source, make_experiment
 from softafm.experiment.scales import Regime
@@ -177,7 +176,7 @@ def _add_regularisation(found: list[Row], experiment: "Experiment", contact: "Co
         words += "; a second run estimates the error" if regularise == "auto" else ""
         found.append(Row("range", write_quantity(length, "m"), words))
     elif is_beyond(given, mode, motion):
-        words = f"the law stays: beyond a Tabor number of {LARGEST_TABOR:g} the run may fail"
+        words = f"the law stays: beyond a Tabor number of {given.largest_tabor:g} the run may fail"
         found.append(Row("range", write_quantity(given.surface.range, "m"), words))
 
 

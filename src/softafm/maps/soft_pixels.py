@@ -26,7 +26,7 @@ def regularise_further(
     """Return a contact for the run that tells the error: the same, if none is to be told."""
     found = regularise_contact(contact, regularise, mode, motion)
     if regularise == "auto" and found is not contact:
-        return contact.regularised(COARSER)
+        return contact.regularised(COARSER * contact.largest_tabor)
     return found
 
 
@@ -66,9 +66,10 @@ def estimate_errors(
         if contact is before:
             continue
         found = errors[number == i][0]
-        largest, known = np.nan, f"a run at {COARSER:g} to tell the error has no result"
+        tabor = COARSER * before.largest_tabor
+        largest, known = np.nan, f"a run at {tabor:g} to tell the error has no result"
         if not np.isnan(found).all():
             worst = int(np.nanargmax(found))
             largest, name = float(found[worst]), names[worst]
-            known = f"by a run at {COARSER:g} it is off by up to {100 * largest:.2g} % ({name})"
+            known = f"by a run at {tabor:g} it is off by up to {100 * largest:.2g} % ({name})"
         yield i, tell_choice(before, contact, largest, known)

@@ -28,9 +28,9 @@ if TYPE_CHECKING:
 Regularise = float | Literal["auto"] | None
 """The option ``regularise`` of modes."""
 
-CHOSEN, COARSER = LARGEST_TABOR / 2, LARGEST_TABOR / 4
-"""Tabor number that a contact beyond the largest is given, and that of a second run, which tells
-by how much the range still matters: both well within reach."""
+CHOSEN, COARSER = 1 / 2, 1 / 4
+"""Tabor number that a contact beyond its largest is given, in that, and that of a second run, which
+tells by how much the range still matters: both well within reach."""
 _ROUNDING = 1 + 1e-6
 """What was regularised to the largest number is not beyond it."""
 
@@ -40,7 +40,7 @@ def is_beyond(contact: Contact, mode: "Mode", motion: Any) -> bool:
 
     A sample that would soften long after the end is not soft.
     """
-    largest = LARGEST_TABOR * _ROUNDING
+    largest = contact.largest_tabor * _ROUNDING
     if contact.tabor_softened <= largest:
         return False
     if mode.simulate is not None:
@@ -74,12 +74,12 @@ def choose_tabor(
     if not is_beyond(contact, mode, motion):
         return None
     try:
-        longer = contact.regularised(COARSER)
+        longer = contact.regularised(COARSER * contact.largest_tabor)
         if mode.simulate is None:
             refuse_start_inside(longer, mode.path(motion))
     except ValueError:  # not every law can be stretched, nor farther than the tip is away at first
         return None
-    return CHOSEN
+    return CHOSEN * contact.largest_tabor
 
 
 def regularise_contact(
@@ -97,7 +97,7 @@ def doubt_softness(contact: Contact, mode: "Mode", motion: Any) -> tuple[Accurac
     tabor = contact.tabor_softened
     text = (
         f"the surface law '{contact.surface.kind}' is taken as it is at a Tabor number of "
-        f"{tabor:.3g}; beyond {LARGEST_TABOR:g} the solver may not succeed"
+        f"{tabor:.3g}; beyond {contact.largest_tabor:g} the solver may not succeed"
     )
     return (AccuracyWarning(text, tabor),)
 
@@ -128,20 +128,21 @@ def estimate_error(
         As for the mode.
     """
     errors: dict[str, float] = {}
-    again = partial(repeat, given.regularised(COARSER))
+    coarser = COARSER * given.largest_tabor
+    again = partial(repeat, given.regularised(coarser))
     try:
-        other = run_again(again, progress, f"at a Tabor number of {COARSER:g}")
+        other = run_again(again, progress, f"at a Tabor number of {coarser:g}")
     except DivergedError as error:
-        known = f"the run at {COARSER:g} that tells the error failed: {error}"
+        known = f"the run at {coarser:g} that tells the error failed: {error}"
         largest = np.nan
     else:
         found = find_differences(mode, result, other, scales(other))
         errors = {name: difference.relative for name, difference in found.items()}
         worst = max(errors, key=lambda name: abs(errors[name]), default="")
         largest = abs(errors.get(worst, np.nan))
-        known = f"by a run at {COARSER:g} it is off by up to {100 * largest:.2g} % ({worst})"
+        known = f"by a run at {coarser:g} it is off by up to {100 * largest:.2g} % ({worst})"
     result.attrs |= {"regularised_errors": json.dumps(errors), "regularised_error": largest}
-    contact = given.regularised(CHOSEN)
+    contact = given.regularised(CHOSEN * given.largest_tabor)
     record_warning(result, tell_choice(given, contact, largest, known))
 
 
@@ -154,8 +155,8 @@ def tell_choice(given: Contact, contact: Contact, error: float, known: str) -> A
     slower = compute_edge_slowing(given, contact.surface.range)
     text = (
         f"regularised by itself: the Tabor number of {given.tabor_softened:.3g} is beyond "
-        f"{LARGEST_TABOR:g}, and was lowered to {CHOSEN:g} by a range of {after} in place of "
-        f"{before}; {known}"
+        f"{given.largest_tabor:g}, and was lowered to {contact.tabor_softened:.3g} by a range of "
+        f"{after} in place of {before}; {known}"
     )
     if slower > 1:
         text += f"; the edge is {slower:.2g} times slower in cohesive lengths, which adds to that"

@@ -10,7 +10,7 @@ from softafm.instrument.motion import is_steady
 if TYPE_CHECKING:
     from softafm.solvers.history import History
 
-_INTEGRAL, _WORK, _STEPS = 0.1, 2e-3, 2e-5
+_INTEGRAL, _WORK, _STEPS = 0.1, 2e-3, 5e-5
 """Errors of the work: in differences of two rules of integration, in itself, and in the largest
 force times the way, for what happens between two steps. Elastic ramps and taps without a jump do no
 work: of the first 40 such of ``benchmarks/contacts.py`` nine in ten are off by less than the first.

@@ -5,7 +5,6 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from softafm.checks.validate import LARGEST_TABOR
 from softafm.errors import AccuracyWarning
 from softafm.solvers.energy.tuning import COARSER_THAN_NEEDED, LEAST_ENERGY, SHARPEST
 
@@ -27,9 +26,9 @@ def list_doubts(run: "Run") -> tuple[AccuracyWarning, ...]:
 def suggest_longer_range(contact: Any) -> str:
     """Return advice, for the end of a line, where the contact is too soft for its own range."""
     tabor = contact.tabor_softened
-    if tabor <= LARGEST_TABOR:
+    if tabor <= contact.largest_tabor:
         return ""
-    return f"; its Tabor number is {tabor:.3g}: try regularise={LARGEST_TABOR / 2:g}"
+    return f"; its Tabor number is {tabor:.3g}: try regularise={contact.largest_tabor / 2:g}"
 
 
 def _doubt_steadiness(run: "Run") -> tuple[AccuracyWarning, ...]:

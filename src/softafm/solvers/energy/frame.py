@@ -164,10 +164,10 @@ def follow_edge(step, clock, mesh, controls):
     where nodes farther in resolve a receding edge: the memory keeps the old rim, sharp, and a
     surface that parts everywhere at once has an edge that runs without meaning.
     """
-    frame, edge = clock.frame, clock.edge
+    frame, edge = clock.frame, clock.felt
     if clock.history < 2:
         return frame
-    ahead = (edge - clock.edge_earlier) * step / clock.taken
+    ahead = (edge - clock.felt_earlier) * step / clock.taken
     ahead = min(max(ahead, -FARTHEST_RIDE * edge), FARTHEST_RIDE * edge)
     suited = choose_frame(edge, controls.open_frame)
     node = mesh.edge_spacing * frame

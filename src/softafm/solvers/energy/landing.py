@@ -217,7 +217,11 @@ def _snap_in(surface: "Surface") -> tuple[float, ...] | None:
     surface.clock["frame"] = radius
     surface.clock["deflection"] = height - landing.base
     record = surface.take(shape, v)
+    if not surface.bends:  # where the landing was found to a thousandth of a gap
+        surface.clock["deflection"] = 0.0
+        record = (record[0], landing.base, *record[2:])
     surface.clock["edge"] = surface.clock["edge_earlier"] = radius
+    surface.clock["felt"] = surface.clock["felt_earlier"] = radius
     surface.clock["rides"] = 1.0
     return record
 

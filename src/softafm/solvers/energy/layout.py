@@ -40,6 +40,7 @@ CLOCK_FIELDS = record(
     "taken", "taken_earlier",  # the last two steps, s
     "frame", "frame_earlier", "frame_earliest",  # radii of the frames of the last three shapes, m
     "edge", "edge_earlier",  # radius of the contact edge, m
+    "felt", "felt_earlier",  # the same, or of the dent that a tip makes without contact, m
     "widest",  # the largest of these so far, m, in steady cycles of the last cycle
     "zone",  # width of the cohesive zone at the edge, m, 0 out of contact
     "axis_gap",  # gap on the axis, m

@@ -134,8 +134,8 @@ def predict(frame, step, history, fields, clock, mesh, weights, guess, work, sha
     """
     n = mesh.nodes.size
     speed = 0.0
-    if history > 1 and not (frame == clock.frame and clock.edge < clock.edge_earlier):
-        speed = (clock.edge - clock.edge_earlier) / clock.taken
+    if history > 1 and not (frame == clock.frame and clock.felt < clock.felt_earlier):
+        speed = (clock.felt - clock.felt_earlier) / clock.taken
     frames = (clock.frame, clock.frame_earlier, clock.frame_earliest)
     ago = (step, step + clock.taken, step + clock.taken + clock.taken_earlier)
     for i in range(n):

@@ -9,6 +9,7 @@ import numpy as np
 from softafm.errors import DivergedError
 from softafm.instrument.lever import Lever
 from softafm.instrument.motion import Motion, Turning, bound_speed, count_periods, find_setpoint
+from softafm.solvers.energy.dent import Dent
 from softafm.solvers.energy.doubts import list_doubts, suggest_longer_range
 from softafm.solvers.energy.fall import creep_down, is_jump
 from softafm.solvers.energy.landing import land
@@ -43,6 +44,7 @@ from softafm.solvers.energy.tuning import (
     SLIPS_AGAIN,
     STAGNANT,
     STEADY,
+    SURELY_STEADY,
 )
 from softafm.solvers.history import History
 from softafm.solvers.periodic import PeriodicMemory
@@ -97,6 +99,7 @@ class Run:
         )
         self.target = self.surface.target
         self.records, self.count = np.empty(2 * _CHUNK, RECORD_FIELDS), 0
+        self.keep_shapes = keep_shapes
         self.shapes: list[Shape] | None = [] if keep_shapes else None
         self.coarsest = 0.0, 0.0
         self.slips, self.end_of_slip = 0, -np.inf
@@ -162,7 +165,15 @@ class Run:
         periodic = PeriodicMemory(period, elements, times, surface.edge_gap)
         if times.max(initial=0) > period:  # small errors of a cycle add up
             surface.clock["contraction"] = np.inf
-        memory, misses = None, []
+        memory: np.ndarray | None = None
+        forces: np.ndarray | None = None
+        misses: list[float] = []
+        dent = Dent(surface, period)
+        shapes: list[Shape] = self.shapes or []
+        if dent.rules:
+            self.shapes = shapes
+            if (memory := dent.guess(self._lowest_time())) is not None:
+                surface.remember(memory)
         for self.cycle in range(1, MOST_CYCLES + 1):
             self.count = 0
             self.falls.clear()
@@ -174,12 +185,19 @@ class Run:
             surface.clock["widest"] = self.records[: self.count]["edge"].max()
             gained = surface.rewind(start)
             memory = np.zeros_like(gained) if memory is None else memory
-            memory, off = periodic.next_start(memory, gained)
+            if dent.rules:
+                records = self.records[: self.count]
+                memory, off = dent.next_start(memory, gained, records, shapes)
+            else:
+                memory, off = periodic.next_start(memory, gained)
             self.unsteady = off / surface.edge_gap
             misses.append(self.unsteady)
             caught = surface.clock["edge"] > 0 and self.records[0]["edge"] == 0
-            if not caught and (self.unsteady <= self.steadiness or _stagnates(misses)):
-                self.unsteady = max(self.unsteady, _scatter(misses))
+            forces, before = _sum_up(self.records[: self.count]), forces
+            steady = self.unsteady <= self.steadiness
+            steady &= self.unsteady < SURELY_STEADY or _are_near(forces, before, self.strictness)
+            if not caught and (steady or _stagnates(misses)):
+                self.unsteady = max(self.unsteady, 0.0 if dent.rules else _scatter(misses))
                 return
             surface.remember(memory)
 
@@ -187,6 +205,10 @@ class Run:
         """Take a motion for what is to be done, and the instants that a step of it has to meet."""
         self.motion, self.breaks = motion, motion.breaks
         self.stops = np.sort(np.concatenate([motion.breaks, motion.landmarks]))
+
+    def _lowest_time(self) -> float:
+        """Return when the motion is lowest, s."""
+        return float(self.stops[np.argmin(self.motion.height(self.stops))])
 
     def _next_stop(self) -> float | None:
         """Return the next instant that a step has to meet, s, or None at the end."""
@@ -345,7 +367,7 @@ class Run:
             motion=self.motion,
             jump_time=time[jumped],
             jump_energy=records["jump"][jumped],
-            profiles=None if self.shapes is None else interpolate_to_common_radii(self.shapes),
+            profiles=interpolate_to_common_radii(self.shapes or []) if self.keep_shapes else None,
             diagnostics={
                 "steps": time.size - 1,
                 "attempted_steps": int(surface.clock["tries"]),
@@ -361,6 +383,22 @@ class Run:
             },
             warnings=list_doubts(self),
         )
+
+
+def _sum_up(records: np.ndarray) -> np.ndarray:
+    """Return the largest, smallest and mean force of a cycle, N."""
+    force, time = records["force"], records["time"]
+    mean = np.trapezoid(force, time) / (time[-1] - time[0])
+    return np.array([force.max(), force.min(), mean])
+
+
+def _are_near(forces: np.ndarray, before: np.ndarray | None, strictness: float) -> bool:
+    """Whether forces of two cycles differ by less than half the tolerance of themselves."""
+    if before is None:
+        return False
+    least = 0.01 * np.abs(forces).max()
+    allowed = 5e-3 * strictness * np.fmax(np.abs(forces), least)
+    return bool((np.abs(forces - before) <= allowed).all())
 
 
 def _stagnates(misses: list[float]) -> bool:

@@ -157,6 +157,8 @@ def accept(
     # left none that is sharp.
     anew = edge >= AS_WIDE * clock.widest or trial.rides == TRACES
     clock.widest = max(clock.widest, edge)
+    clock.felt_earlier = clock.felt
+    clock.felt = find_dent(edge, force, gap, work.u[0], frame, mesh, controls)
     record.lost = carry_lag_energy(
         parameters.compliance, parameters.retardation, trial.step, frame, anew, work.weights,
         work.left, work.lags, work.strained, mesh.stiffness, lag_energy,
@@ -177,6 +179,15 @@ def accept(
         clock.zone = frame * find_radius(gap, mesh.nodes, controls.open_gap) - edge
         record.coarseness = frame * mesh.edge_spacing / max(clock.zone, 1e-9 * frame)
     record.frame, record.jump = frame, 0.0
+
+
+@inline
+def find_dent(edge, force, gap, axis, frame, mesh, controls):
+    """Radius of the contact edge, m, or where a tip dents a surface that it does not touch, that at
+    which the gap is twice that on the axis."""
+    if edge > 0.0 or force <= 0.0 or axis > -controls.edge_gap:
+        return edge
+    return frame * find_radius(gap, mesh.nodes, 2.0 * gap[0])
 
 
 @inline

@@ -10,6 +10,7 @@ from softafm.bodies.stiffness import STEP, Stiffness
 from softafm.errors import DivergedError
 from softafm.instrument.lever import Lever
 from softafm.instrument.motion import Motion, is_steady
+from softafm.instrument.motions import find_lowest_height
 from softafm.solvers.energy.descent import descend
 from softafm.solvers.energy.equilibrium import raise_tip, tip_force
 from softafm.solvers.energy.frame import choose_frame, find_radius, transfer
@@ -31,6 +32,7 @@ from softafm.solvers.energy.layout import (
 from softafm.solvers.energy.memory import recall
 from softafm.solvers.energy.stiffness import find_stiffness
 from softafm.solvers.energy.tuning import (
+    APEX,
     AT_ONCE,
     CLOSEST,
     COARSER_THAN_NEEDED,
@@ -39,7 +41,9 @@ from softafm.solvers.energy.tuning import (
     EXTENT,
     FAR_SOFTER,
     FINER_THAN_NEEDED,
+    FINEST_GROWTH,
     GROWTH,
+    GROWTH_IF_FAR_SOFTER,
     HARDLY_SOFTER,
     HELD,
     HELD_IF_FAR_SOFTER,
@@ -47,7 +51,6 @@ from softafm.solvers.energy.tuning import (
     SLACK,
     SLACKER,
     SPACING,
-    STEEP,
     TOO_SLOW,
     TRACE_FROM,
 )
@@ -99,20 +102,22 @@ class Surface:
         self.accuracy = EQUILIBRIUM_ERROR * at_least
         sharpness = contact.surface.sharpness if contact.adhesive else 1.0
         self.target = SPACING * at_least**0.2 / max(1.0, sharpness)
-        self.growth = GROWTH * min(1.0, strictness**0.17)
+        self.growth = GROWTH * min(1.0, strictness**0.17) * find_fineness(contact, motion)
+        period = float(breaks[-1] - breaks[0])
+        duration = inf if is_steady(motion) else period
+        if find_softening(self.parameters, duration) > FAR_SOFTER:
+            # No elastic answer evens out what the nodes do not resolve.
+            self.growth = min(self.growth, GROWTH_IF_FAR_SOFTER)
         # Where the tip rises steeply, at the rim of a punch, it holds the edge; and a sample that
         # is all memory parts evenly, without an edge.
-        free = contact.open_width > STEEP * self.open_frame
-        free = free and find_softening(self.parameters, breaks[-1] - breaks[0]) < FAR_SOFTER
-        tabor = contact.tabor_after(breaks[-1] - breaks[0]) if contact.adhesive else 0.0
+        free = not contact.steep and find_softening(self.parameters, period) < FAR_SOFTER
+        tabor = contact.tabor_after(period) if contact.adhesive else 0.0
         slack = free and tabor > SLACK
         self.ride_from = RIDE_FROM * self.open_frame if slack else inf
         # What a steady cycle gathers is filtered at fixed radii, and a trace knows one stiffness.
         traced = free and tabor > SLACKER and not is_steady(motion) and isinf(contact.body.length)
         self.trace_from = TRACE_FROM if traced else inf
-        period = float(breaks[-1] - breaks[0])
         self.too_slow = TOO_SLOW[1 if is_steady(motion) else 0] * period
-        duration = inf if is_steady(motion) else period
         self.held = choose_spacing_held(self.parameters, duration)
         self.finest_level = max(0, ceil(log2(COARSEST_SPACING / finest_spacing)))
         self.level = self.first_level = self.find_level(0.4 * contact.open_width / self.open_frame)
@@ -343,6 +348,7 @@ class Surface:
         zone = frame * find_radius(gap, mesh.nodes, self.open_gap) - edge
         clock["frame_earlier"] = clock["frame_earliest"] = frame
         clock["edge"], clock["axis_gap"], clock["force"] = edge, gap[0], force
+        clock["felt"] = edge
         clock["zone"] = zone if edge else 0.0
         clock["force_scale"] = max(clock["force_scale"], -force)
         clock["history"] = 1
@@ -387,6 +393,19 @@ class Surface:
         carried = frame * (memory - 0.5 * load) @ self.mesh.stiffness @ load + self.lag_energy
         elements = np.where(self.parameters.retardation > self.too_slow, summed, carried)
         return self.energy() + float(2 * np.pi * self.parameters.compliance[1:] @ elements)
+
+
+def find_fineness(contact: Any, motion: Motion) -> float:
+    """Return by how much less nodes may grow apart for the apex of a tip to be resolved.
+
+    The apex, round up to where its parabola would be as steep as the tip is at the contact edge, is
+    seen by the nodes at the axis.
+    """
+    widest = contact.contact_radius(find_lowest_height(motion))
+    if widest == 0:
+        return 1.0
+    apex = contact.effective_radius * float(contact.tip.slope(widest))
+    return float(np.clip(APEX * apex / widest, FINEST_GROWTH, 1.0))
 
 
 def find_softening(parameters: Parameters, duration: float) -> float:

@@ -89,10 +89,6 @@ it is; of the period in steady cycles, where the element gathers the mean of the
 
 # The frame that rides on the contact edge.
 
-STEEP = 0.05
-"""Width over which a tip rises from one to two ranges of the attraction, in radii of the open
-contact, below which its edge stays there (paraboloids have 0.4, cones 0.9, punches 0)."""
-
 RIDE_FROM = 0.25
 """Radius of the edge, in radii of the open contact, beyond which a slack contact is solved together
 with it."""
@@ -158,6 +154,15 @@ GROWTH = 0.3
 """Logarithmic growth of the spacing a node away from the edge (``softafm docs performance``, "What
 did not help": 0.45 slips in slack contacts)."""
 
+GROWTH_IF_FAR_SOFTER = 0.2
+"""The same where a sample is all memory: the pull-off of a slow tap was 1.2 % off, that of a punch
+3 %."""
+
+APEX, FINEST_GROWTH = 2.5, 0.6
+"""Radius of a round apex, in that of the contact, times the first is the part of that growth that
+a tip sharper than a paraboloid gets, down to the second (the pull-off of a cone pressed to nine
+times its apex was 4.8 % off)."""
+
 SLACK = 6.0
 """Tabor number of the softened sample from which on the edge of a contact yields to small errors,
 so that it is solved for together with the surface."""
@@ -174,10 +179,10 @@ FINEST_TARGET = 0.02
 PREDICTION_ERROR = 0.03
 """Largest error of the extrapolated shape, relative to the gap, at a tolerance of 1e-2."""
 
-MEMORY_ERROR = 0.01
+MEMORY_ERROR = 0.005
 """Largest error of the memory in a step, relative to the gap, at that tolerance."""
 
-FORCE_ERROR = 0.01
+FORCE_ERROR = 0.0075
 """Largest error of the extrapolated force, relative to itself or to the largest attraction so far,
 if that is more, at that tolerance. Where it has fallen again, the largest repulsion is no measure:
 it may be a thousand times the pull-off."""
@@ -258,6 +263,13 @@ MOST_CYCLES = 150
 STEADY = 1e-2
 """How far off the memory may start, in gaps of the contact edge, in a cycle that counts as steady,
 at a tolerance of 1e-2: what the errors of a cycle leave."""
+
+SURELY_STEADY = 1e-4
+"""The same below which a cycle is steady, whatever the forces of the one before."""
+
+MUCH_SLOWER = 4.0
+"""Compliance that a steady cycle finds as it was left, in that which acts within the cycle, beyond
+which the dent is sought by Newton's method."""
 
 STAGNANT = 8
 """Cycles in which the start must become twice as good, or all that is left are errors."""
