@@ -38,18 +38,17 @@ def interpolate(time, at, near, basis):
             if 0 < j < count:
                 shortest = min(shortest, time[first + j] - time[first + j - 1])
         uneven = time[left + 1] - time[left] > _LONGEST * shortest
-        for p in range(at.shape[1]):
-            basis[m, p, count:] = 0.0
-            for j in range(count):
+        begin, end = (left, left + 2) if uneven else (first, first + count)
+        basis[m] = 0.0
+        for j in range(begin, end):
+            scale = 1.0
+            for other in range(begin, end):
+                scale *= time[j] - time[other] if other != j else 1.0
+            for p in range(at.shape[1]):
                 value = 1.0
-                for other in range(count):
-                    if uneven and not left <= first + other <= left + 1:
-                        continue
-                    if other != j:
-                        a, b = time[first + other], time[first + j]
-                        value *= (at[m, p] - a) / (b - a)
-                inside = left <= first + j <= left + 1
-                basis[m, p, j] = value if inside or not uneven else 0.0
+                for other in range(begin, end):
+                    value *= at[m, p] - time[other] if other != j else 1.0
+                basis[m, p, j - first] = value / scale
 
 
 @compile_for(

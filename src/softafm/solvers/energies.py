@@ -81,8 +81,8 @@ class Energies(NamedTuple):
 def measure_energies(history: "History", start: float, stop: float) -> Energies:
     """Return where the energy of a history went between two times, s."""
     slack = 1e-9 * (stop - start)
-    first, last = np.searchsorted(history.time, [start - slack, stop + slack])
-    inside, motion = slice(int(first), int(last)), history.motion
+    inside = slice(*map(int, history.time.searchsorted([start - slack, stop + slack])))
+    motion = history.motion
     work, curved = history.compare_rules(history.force, motion.velocity, start, stop)
     viscous = history.integrate_power(start, stop)
     jumped = (history.jump_time > start) & (history.jump_time <= stop)

@@ -137,8 +137,8 @@ class History:
         rule = self._quadrature(start, stop)
         weighted = weight(rule.at) * rule.lengths
         curved = rule.interpolate(values)
-        off = (np.interp(rule.at, self.time, values) - curved) * weighted
-        opposed = abs(off[weighted < 0].sum()) + abs(off[weighted > 0].sum())
+        off = np.interp(rule.at, self.time, values) - curved
+        opposed = max(abs(np.sum(off * weighted)), abs(np.sum(off * np.abs(weighted))))
         return float(np.sum(curved * weighted)), float(opposed)
 
     def _quadrature(self, start: float, stop: float) -> "Quadrature":
@@ -169,8 +169,7 @@ class History:
         best, summit = -np.inf, -np.inf
         for piece in self.pieces:
             time, height = self.time[piece], sign * values[piece]
-            first = int(np.searchsorted(time, start))
-            last = int(np.searchsorted(time, stop, "right")) - 1
+            first, last = int(time.searchsorted(start)), int(time.searchsorted(stop, "right")) - 1
             if first > last:
                 continue
             top = first + int(height[first : last + 1].argmax())

@@ -67,7 +67,7 @@ class SurfaceLaw(ABC):
         """Gap above which the law may be asked, m: 0, or −∞ of a law that goes on below."""
         return -inf if self.overlaps else 0.0
 
-    @property
+    @cached_property
     def attracts(self) -> bool:
         """Whether there is a gap at which the surfaces attract each other."""
         return bool(self._scanned.min() < 0)
