@@ -76,13 +76,16 @@ class Landing:
 
     def expected_radius(self) -> float:
         """Radius of the stable contact at this height, m; 0 if there is none."""
-        radius = self.surface.open_frame * np.geomspace(1e-2, 1e4, 600)
-        height, force = self.heights(radius)
-        miss = height - self.base - force / self.lever
-        above = np.flatnonzero((miss[:-1] > 0) & (miss[1:] <= 0))
-        if not above.size:
-            return 0.0
-        i = above[0]
+        radius = self.surface.open_frame * np.geomspace(1e-2, 1e4, 100)
+        for closer in (True, False):
+            height, force = self.heights(radius)
+            miss = height - self.base - force / self.lever
+            above = np.flatnonzero((miss[:-1] > 0) & (miss[1:] <= 0))
+            if not above.size:
+                return 0.0
+            i = above[0]
+            if closer:
+                radius = np.append(radius[:i], np.linspace(radius[i], radius[i + 1], 10))
         return float(radius[i] + (radius[i + 1] - radius[i]) * miss[i] / (miss[i] - miss[i + 1]))
 
     def crack(self, radius: float, height: float) -> np.ndarray:
