@@ -166,15 +166,14 @@ class History:
         """
         from softafm.solvers.quadrature import find_summit
 
-        best, summit = -np.inf, -np.inf
+        best = -np.inf
         for piece in self.pieces:
             time, height = self.time[piece], sign * values[piece]
             first, last = int(time.searchsorted(start)), int(time.searchsorted(stop, "right")) - 1
             if first > last:
                 continue
             top = first + int(height[first : last + 1].argmax())
-            if height[top] > best:
-                best, summit = height[top], -np.inf
-                if first < top < last:
-                    summit = find_summit(time, height, top)
-        return sign * float(max(best, summit))
+            best = max(best, height[top])
+            if first < top < last:
+                best = max(best, find_summit(time, height, top))
+        return sign * float(best)

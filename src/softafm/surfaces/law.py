@@ -82,7 +82,7 @@ class SurfaceLaw(ABC):
         """Gap where the attraction is strongest, m."""
         return self._tension_gap
 
-    @property
+    @cached_property
     def largest_tension(self) -> float:
         """Largest attraction −p, Pa; 0 of a law that only repels."""
         return -float(self.pressure(self.gap_of_largest_tension)) if self.attracts else 0.0

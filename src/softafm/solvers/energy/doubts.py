@@ -93,6 +93,8 @@ def _doubt_width(run: "Run") -> tuple[AccuracyWarning, ...]:
 
 
 def _doubt_jumps(run: "Run") -> tuple[AccuracyWarning, ...]:
+    if not run.gained:
+        return ()
     records = run.records[: run.count]
     seen = records["jump"].sum() + np.trapezoid(records["loss"], records["time"])
     felt = LEAST_ENERGY * np.abs(records["force"]).max(initial=0.0) * run.contact.reach

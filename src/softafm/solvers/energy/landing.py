@@ -177,7 +177,7 @@ class Landing:
             radius, height = radius + change, next_height
         else:
             return None
-        return self.solve(radius, shape, height, False)
+        return self.solve(radius, shape, self.base if self.lever == inf else height, False)
 
 
 def land(

@@ -199,7 +199,7 @@ class Run:
 
     def _next_stop(self) -> float | None:
         """Return the next instant that a step has to meet, s, or None at the end."""
-        ahead = np.searchsorted(self.stops, self.surface.time, side="right")
+        ahead = self.stops.searchsorted(self.surface.time, side="right")
         return float(self.stops[ahead]) if ahead < self.stops.size else None
 
     def _trigger(self, stop: float) -> float:

@@ -107,7 +107,8 @@ class Energy:
             raise ValueError(
                 f"stiffness = {stiffness:g} N/m: must be left out where there is a lever"
             )
-        check_lever(lever)
+        else:
+            check_lever(lever)
         started = perf_counter()
         with announce_compilation(self.kind):
             from softafm.solvers.energy.run import Run
