@@ -23,7 +23,7 @@ import signal
 import warnings
 from dataclasses import replace
 from pathlib import Path
-from time import process_time
+from time import process_time, thread_time
 
 import common
 import contacts
@@ -95,15 +95,16 @@ def compile_parts(contact: sa.Contact) -> tuple:
 
 def perform(experiment) -> dict:
     """Run an experiment; return its observables, seconds of the processor and warnings."""
-    started = process_time()
+    # With a limit set, the clock of the process goes by ticks of milliseconds.
+    started = thread_time()
     try:
         result = experiment.run()
     except (sa.DivergedError, ValueError, ArithmeticError) as error:
-        return {"ending": f"{type(error).__name__}: {error}", "seconds": process_time() - started}
+        return {"ending": f"{type(error).__name__}: {error}", "seconds": thread_time() - started}
     names = SOLUTIONS if "branch" in result.dims else (*FORCES, *ENERGIES)
     return {
         "ending": "completed",
-        "seconds": process_time() - started,
+        "seconds": thread_time() - started,
         "warnings": str(result.attrs["warnings"]),
         "values": {name: result[name].values.tolist() for name in names if name in result},
         "jumps": result.sizes.get("jump", 0),
@@ -227,10 +228,22 @@ def report(entries: list[dict], worst: int) -> None:
                 rows.append((name, *shares([entry for entry in some if entry[key] == name])))
         titles = ("", "runs", *judge(some[0]))
         common.show(f"Tolerance {tolerance:g}", dict.fromkeys(titles, "right"), rows)
+        report_costs(some)
         missed = [entry for entry in some if not judge(entry)["within"]]
         missed.sort(key=lambda e: (not judge(e)["or warned"], e["error"] or np.inf), reverse=True)
         for entry in missed[:worst]:
             print(describe(entry))
+
+
+def report_costs(entries: list[dict]) -> None:
+    """Print how many times as long as forecast runs take: the forecast's constants follow it."""
+    rows = []
+    for mode in ("all", *sorted({entry["mode"] for entry in entries})):
+        some = [entry for entry in entries if mode in ("all", entry["mode"])]
+        ratios = [entry["seconds"] / entry["expected"] for entry in some]
+        rows.append((mode, *(f"{each:.2g}" for each in np.percentile(ratios, [5, 25, 50, 75, 95]))))
+    titles = ("", "5 %", "25 %", "median", "75 %", "95 %")
+    common.show("Time over its forecast", dict.fromkeys(titles, "right"), rows)
 
 
 def shares(entries: list[dict]) -> tuple:

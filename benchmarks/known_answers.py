@@ -11,6 +11,7 @@ from math import log, pi, sqrt
 
 import common
 import numpy as np
+from scipy.integrate import trapezoid
 
 import softafm as sa
 from softafm import indentation
@@ -81,7 +82,7 @@ def compare_dent(ratio: float, share: float, decay: float) -> tuple[float, float
     run = sa.force_distance(contact, sa.Triangle(start, gap - DEPTH, DEPTH / TIME))
     beside = indentation.ting(TIP, sample, motion, run.time.values[run.time <= motion.breaks[-1]])
     apart = np.abs(run.force.values[: beside.force.size] - beside.force).max()
-    loop = -np.trapezoid(known.force, known.height)
+    loop = -trapezoid(known.force, known.height)
     return 100 * apart / known.force.max(), 100 * (float(run.loop_energy) / loop - 1)
 
 

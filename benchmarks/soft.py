@@ -12,6 +12,7 @@ from time import process_time
 
 import common
 import numpy as np
+from scipy.integrate import trapezoid
 
 import softafm as sa
 from softafm import solvers
@@ -45,8 +46,8 @@ def measure(contact, ramp, tolerance: float, **options) -> tuple:
             started = process_time()
             history = solver.solve(contact, ramp, tolerance=tolerance, **options)
             times.append(process_time() - started)
-    work = -np.trapezoid(history.force, history.tip_height)
-    spent = np.trapezoid(history.viscous_power, history.time) + history.jump_energy.sum()
+    work = -trapezoid(history.force, history.tip_height)
+    spent = trapezoid(history.viscous_power, history.time) + history.jump_energy.sum()
     unit = np.pi * contact.tip.radius * W
     return (
         history.diagnostics["steps"], history.diagnostics["attempted_steps"],

@@ -6,6 +6,7 @@ from typing import ClassVar
 
 import numpy as np
 import pytest
+from scipy.integrate import trapezoid
 from scipy.optimize import brentq, minimize_scalar
 from scipy.special import beta, dawsn
 
@@ -209,7 +210,7 @@ def make_solid(ratio=10.0, share=0.2, poisson=0.0):
 
 
 def integrate_loop(curve):
-    return -float(np.trapezoid(curve.force, curve.height))
+    return -float(trapezoid(curve.force, curve.height))
 
 
 @pytest.mark.parametrize(("ratio", "share"), TING)

@@ -66,6 +66,14 @@ def test_a_tip_that_is_no_profile_is_refused(own, said):
         sa.Contact(own, SAMPLE, LAW)
 
 
+def test_a_tip_may_have_whole_numbers_for_parameters():
+    """Handed to the compiled loop as they are, they would be read as the bits of floats."""
+    own = tip(None, term=Term(lambda r, n: 1e6 * n * r * r, (50,)))
+    ramp = sa.Triangle(2e-9, 0.0, 1e-6)
+    forces = (sa.force_distance(sa.Contact(each, SAMPLE, LAW), ramp).force for each in (own, TIP))
+    np.testing.assert_allclose(*forces, rtol=1e-6)
+
+
 REFUSED_LAWS = [
     (lambda h, P, d: (P * np.exp(-h / d), P / d * np.exp(-h / d), P * d * np.exp(-h / d)),
      r"slope .* Pa/m at 1e-12 m: must be dp/dh = -"),

@@ -91,7 +91,7 @@ class Contact:
     def _modulus_relaxed(self) -> float:
         return 1 / self.body.compliance.relaxed
 
-    @property
+    @cached_property
     def adhesive(self) -> bool:
         """Whether it takes work to part the surfaces."""
         return self.surface.attracts and self.surface.work_of_adhesion > 0
@@ -110,7 +110,7 @@ class Contact:
             low, high = (middle, high) if self.surface.pressure(middle) > least else (low, middle)
         return low
 
-    @property
+    @cached_property
     def softened_modulus(self) -> float:
         """Long-term reduced modulus; of a sample that flows, its modulus when flow sets in, Pa."""
         creep = self.body.compliance
@@ -176,7 +176,7 @@ class Contact:
         W, z0 = self.surface.work_of_adhesion, self.surface.range
         return (self.effective_radius * W**2 / (modulus**2 * z0**3)) ** (1 / 3)
 
-    @property
+    @cached_property
     def tabor_instantaneous(self) -> float:
         """Tabor number μ = (R W²/(E² z0³))^(1/3) with the short-term reduced modulus."""
         return self._tabor(self._modulus_instantaneous)
@@ -189,7 +189,7 @@ class Contact:
         """
         return self._tabor(self._modulus_relaxed)
 
-    @property
+    @cached_property
     def tabor_softened(self) -> float:
         """Tabor number with the softened modulus: the relaxed one, or of a sample that flows."""
         return self._tabor(self.softened_modulus)

@@ -5,15 +5,21 @@ Nodes are ξ_j = ξ(j), j = 0..n−1, with r = a·ξ and a the radius of the con
     j(ξ) = [asinh(g(ξ − 1)/δ) + asinh(g(ξ + 1)/δ)]/g
 
 has spacing δ at the edge ξ = 1, grows by a factor e^g per node away from it, and is odd in ξ, so
-even functions of radius stay even in j. Sums over nodes with weights ξ dξ/dj are then trapezoidal
-rules in j for smooth integrands, which converge faster than any power of the spacing once the
-Euler-Maclaurin terms of their two ends are folded into the masses there.
+even functions of radius stay even in j. Its inverse is, with y = g j/2,
+
+    ξ(j) = tanh(y) √(1 + (δ/g)² cosh²(y)).
+
+Sums over nodes with weights ξ dξ/dj are then trapezoidal rules in j for smooth integrands, which
+converge faster than any power of the spacing once the Euler-Maclaurin terms of their two ends are
+folded into the masses there.
 """
 
 from functools import lru_cache
 from typing import Any, NamedTuple
 
 import numpy as np
+
+_POINTS, _WEIGHTS = np.polynomial.legendre.leggauss(8)
 
 
 class UnitMesh(NamedTuple):
@@ -74,16 +80,8 @@ def unit_mesh(edge_spacing: float, growth: float, extent: float) -> UnitMesh:
     ``edge_spacing`` δ and ``growth`` g are dimensionless, see the module's formula.
     """
     last = int(np.ceil(node_index(extent, edge_spacing, growth)))
-    outside = 2 * extent
-    while node_index(outside, edge_spacing, growth) < last:
-        outside *= 2
-    low, high = np.zeros(last + 1), np.full(last + 1, outside)
-    for _ in range(60):
-        middle = (low + high) / 2
-        above = node_index(middle, edge_spacing, growth) > np.arange(last + 1)
-        low, high = np.where(above, low, middle), np.where(above, middle, high)
-    nodes = (low + high) / 2
-    nodes[0] = 0.0
+    half = growth / 2 * np.arange(last + 1)
+    nodes = np.tanh(half) * np.hypot(1, edge_spacing / growth * np.cosh(half))
     spacing = _spacing(nodes, edge_spacing, growth)
     masses = _masses(nodes, spacing)
     far, far_masses = beyond(nodes[-1])
@@ -98,6 +96,5 @@ def beyond(end: float) -> tuple[np.ndarray, np.ndarray]:
 
     Gauss-Legendre in end/s: exact for f = s^-3 to s^-18.
     """
-    points, weights = np.polynomial.legendre.leggauss(8)
-    inverse = (1 + points) / 2
-    return end / inverse, end**2 * weights / 2 / inverse**3
+    inverse = (1 + _POINTS) / 2
+    return end / inverse, end**2 * _WEIGHTS / 2 / inverse**3

@@ -81,36 +81,36 @@ class Energies(NamedTuple):
 def measure_energies(history: "History", start: float, stop: float) -> Energies:
     """Return where the energy of a history went between two times, s."""
     slack = 1e-9 * (stop - start)
-    inside = (history.time >= start - slack) & (history.time <= stop + slack)
+    inside = slice(*map(int, history.time.searchsorted([start - slack, stop + slack])))
     motion = history.motion
     work, curved = history.compare_rules(history.force, motion.velocity, start, stop)
     viscous = history.integrate_power(start, stop)
     jumped = (history.jump_time > start) & (history.jump_time <= stop)
     jumps = float(history.jump_energy[jumped].sum())
-    stored = _find_stored(history, inside, bool(jumped.any()))
+    height = motion.height(history.time[inside])
+    way, largest = np.ptp(height), np.abs(history.force[inside]).max()
+    back = abs(height[-1] - height[0]) <= 1e-9 * way
+    stored = _find_stored(history, inside, bool(back), bool(jumped.any()))
     if stored is not None and abs(stored) < _ROUNDING * (viscous + jumps):
         stored = 0.0
     spent_error = _VISCOUS * abs(viscous) + _JUMPS * abs(jumps) + _STORED * abs(stored or 0.0)
-    way, largest = np.ptp(motion.height(history.time[inside])), np.abs(history.force[inside]).max()
     work_error = hypot(_INTEGRAL * curved, _WORK * work, _STEPS * largest * way)
     return Energies(-work, viscous, jumps, stored, work_error, spent_error)
 
 
-def _find_stored(history: "History", inside: np.ndarray, jumped: bool) -> float | None:
+def _find_stored(history: "History", inside: slice, back: bool, jumped: bool) -> float | None:
     """Return the energy stored between the instants ``inside``, J, if it is known.
 
-    A steady cycle ends as it began, and so does an elastic contact that is back where it was, and
-    not caught on another branch.
+    A steady cycle ends as it began, and so does an elastic contact that is ``back`` where it was,
+    and not caught on another branch.
     """
     before, after = (
         history.diagnostics.get(f"stored_energy_{end}", nan) for end in ("start", "end")
     )
     if isnan(before) or isnan(after):
         return None
-    height = history.motion.height(history.time[inside])
     edge = history.contact_radius[inside]
-    back = abs(height[-1] - height[0]) <= 1e-9 * np.ptp(height)
     free = not jumped or edge[0] == edge[-1] == 0
     if is_steady(history.motion) or (back and free and not history.viscous_power.any()):
         return 0.0
-    return after - before if inside.all() else None
+    return after - before if edge.size == history.time.size else None

@@ -2,7 +2,7 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -10,10 +10,11 @@ from softafm.errors import AccuracyWarning
 from softafm.instrument.motion import Motion
 from softafm.solvers.energies import Energies, measure_energies
 
-_POINTS, _WEIGHTS = np.polynomial.legendre.leggauss(4)
+if TYPE_CHECKING:
+    from softafm.solvers.quadrature import Quadrature
+
 _POOR = 0.1
 """Part by which the power at both ends may miss the energy of a step that still is resolved."""
-_PARTS = np.linspace(0, 1, 64)[1:-1]
 
 
 @dataclass(frozen=True)
@@ -82,7 +83,7 @@ class History:
     diagnostics: dict[str, float] = field(default_factory=dict)
     warnings: tuple[AccuracyWarning, ...] = ()
     viscous_energy: np.ndarray | None = None
-    _quadratures: dict[Any, Any] = field(
+    _quadratures: "dict[Any, Quadrature]" = field(
         default_factory=dict, init=False, repr=False, compare=False
     )
     _energies: dict[Any, Energies] = field(
@@ -102,11 +103,8 @@ class History:
         instants of the same smooth piece; ``weight`` is a function of time. Gauss-Legendre with
         four points a step.
         """
-        total = 0.0
-        for piece, at, lengths, near, basis in self._quadrature(start, stop):
-            interpolated = np.einsum("mpc,mc->mp", basis, values[piece][near])
-            total += float(np.sum(interpolated * weight(at) * lengths))
-        return total
+        rule = self._quadrature(start, stop)
+        return float(np.sum(rule.interpolate(values) * weight(rule.at) * rule.lengths))
 
     def integrate_power(self, start: float = -np.inf, stop: float = np.inf) -> float:
         """Energy that dashpots take from ``start`` to ``stop`` (s), J: ∫ ``viscous_power`` dt.
@@ -114,19 +112,15 @@ class History:
         As ``integrate``, but for steps so long for a creep time that the power at their ends does
         not tell: what the solver states as ``viscous_energy`` counts there.
         """
-        total = 0.0
-        for piece, at, lengths, near, basis in self._quadrature(start, stop):
-            time, power = self.time[piece], self.viscous_power[piece]
-            each = np.sum(np.einsum("mpc,mc->mp", basis, power[near]) * lengths, axis=1)
-            if self.viscous_energy is not None:
-                end, width = np.searchsorted(time, at[:, -1]), lengths.sum(axis=1)
-                lost, straight = self.viscous_energy[piece][end], width * power[end - 1]
-                straight = (straight + width * power[end]) / 2
-                poor = np.abs(lost - straight) > _POOR * np.maximum(lost, np.abs(straight))
-                whole = width > (1 - 1e-9) * (time[end] - time[end - 1])
-                each = np.where(poor & whole, lost, each)
-            total += float(each.sum())
-        return total
+        rule, power = self._quadrature(start, stop), self.viscous_power
+        each = np.sum(rule.interpolate(power) * rule.lengths, axis=1)
+        if self.viscous_energy is not None:
+            step, end, width = rule.step, rule.step + 1, rule.lengths.sum(axis=1)
+            lost, straight = self.viscous_energy[end], width * (power[step] + power[end]) / 2
+            poor = np.abs(lost - straight) > _POOR * np.maximum(lost, np.abs(straight))
+            whole = width > (1 - 1e-9) * (self.time[end] - self.time[step])
+            each = np.where(poor & whole, lost, each)
+        return float(each.sum())
 
     def compare_rules(
         self,
@@ -140,34 +134,20 @@ class History:
         Of the second one parts of positive and of negative weight count by their magnitude, as they
         are off in opposite directions on the way down and up.
         """
-        total, falling, rising = 0.0, 0.0, 0.0
-        for piece, at, lengths, near, basis in self._quadrature(start, stop):
-            weighted = weight(at) * lengths
-            curved = np.einsum("mpc,mc->mp", basis, values[piece][near])
-            off = (np.interp(at, self.time[piece], values[piece]) - curved) * weighted
-            total += float(np.sum(curved * weighted))
-            falling += float(off[weighted < 0].sum())
-            rising += float(off[weighted > 0].sum())
-        return total, abs(falling) + abs(rising)
+        rule = self._quadrature(start, stop)
+        weighted = weight(rule.at) * rule.lengths
+        curved = rule.interpolate(values)
+        off = np.interp(rule.at, self.time, values) - curved
+        opposed = max(abs(np.sum(off * weighted)), abs(np.sum(off * np.abs(weighted))))
+        return float(np.sum(curved * weighted)), float(opposed)
 
-    def _quadrature(self, start: float, stop: float) -> list[tuple[Any, ...]]:
-        """Points and weights of every piece, and the cubics there: kept for the next integral."""
-        from softafm.solvers.cubics import cubics
+    def _quadrature(self, start: float, stop: float) -> "Quadrature":
+        """Return the rule between two times, s: kept for the next integral."""
+        from softafm.solvers.quadrature import lay_quadrature
 
         key = max(start, self.time[0]), min(stop, self.time[-1])
         if key not in self._quadratures:
-            rules = self._quadratures[key] = []
-            for piece in self.pieces:
-                time = self.time[piece]
-                edges = np.unique(np.clip(time, start, stop))
-                if edges.size > 1:
-                    middle, half = (edges[1:] + edges[:-1]) / 2, np.diff(edges)[:, None] / 2
-                    at = middle[:, None] + half * _POINTS
-                    count = min(4, time.size)
-                    near = np.empty((len(at), count), int)
-                    basis = np.empty((*at.shape, count))
-                    cubics(time, at, near, basis)
-                    rules.append((piece, at, half * _WEIGHTS, near, basis))
+            self._quadratures[key] = lay_quadrature(self.time, self.pieces, *key)
         return self._quadratures[key]
 
     def energies(self, start: float = -np.inf, stop: float = np.inf) -> Energies:
@@ -184,26 +164,16 @@ class History:
 
         Refined in the intervals on both sides of the extreme step by the cubics of ``integrate``.
         """
+        from softafm.solvers.quadrature import find_summit
+
         best = -np.inf
         for piece in self.pieces:
             time, height = self.time[piece], sign * values[piece]
-            inside = np.flatnonzero((time >= start) & (time <= stop))
-            if inside.size == 0:
+            first, last = int(time.searchsorted(start)), int(time.searchsorted(stop, "right")) - 1
+            if first > last:
                 continue
-            top = inside[np.argmax(height[inside])]
+            top = first + int(height[first : last + 1].argmax())
             best = max(best, height[top])
-            if inside[0] < top < inside[-1]:
-                best = max(best, _find_summit(time, height, top))
+            if first < top < last:
+                best = max(best, find_summit(time, height, top))
         return sign * float(best)
-
-
-def _find_summit(time: np.ndarray, height: np.ndarray, top: int) -> float:
-    """Largest height (n,) that the local cubics have within an interval of the step ``top``."""
-    from softafm.solvers.cubics import cubics
-
-    starts, ends = time[top - 1 : top + 1, None], time[top : top + 2, None]
-    at = starts + (ends - starts) * _PARTS
-    near = np.empty((2, min(4, time.size)), int)
-    basis = np.empty((*at.shape, near.shape[1]))
-    cubics(time, at, near, basis)
-    return float(np.einsum("mpc,mc->mp", basis, height[near]).max())

@@ -67,7 +67,7 @@ class SurfaceLaw(ABC):
         """Gap above which the law may be asked, m: 0, or −∞ of a law that goes on below."""
         return -inf if self.overlaps else 0.0
 
-    @property
+    @cached_property
     def attracts(self) -> bool:
         """Whether there is a gap at which the surfaces attract each other."""
         return bool(self._scanned.min() < 0)
@@ -82,7 +82,7 @@ class SurfaceLaw(ABC):
         """Gap where the attraction is strongest, m."""
         return self._tension_gap
 
-    @property
+    @cached_property
     def largest_tension(self) -> float:
         """Largest attraction −p, Pa; 0 of a law that only repels."""
         return -float(self.pressure(self.gap_of_largest_tension)) if self.attracts else 0.0

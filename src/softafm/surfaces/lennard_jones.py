@@ -54,6 +54,16 @@ class LennardJones(SurfaceLaw):
         return cls(hamaker=16 * pi * z0**2 * W, z0=z0)
 
     @property
+    def attracts(self) -> bool:
+        """True."""
+        return True
+
+    @property
+    def sharpness(self) -> float:
+        """1: other laws are compared with this one."""
+        return 1.0
+
+    @property
     def work_of_adhesion(self) -> float:
         """Work per area to separate the surfaces from z0 to infinity, J/m²."""
         return self.hamaker / (16 * pi * self.z0**2)

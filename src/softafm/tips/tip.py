@@ -85,7 +85,7 @@ class Tip(ABC):
         """The profile compiled for solvers, and its parameters (see ``softafm.compiled``)."""
         from softafm.compiled.functions import compile_profile
 
-        return compile_profile(self.term.shape), np.array(self.term.packed)
+        return compile_profile(self.term.shape), np.array(self.term.packed, float)
 
 
 def check_height(value: float) -> float:

@@ -92,8 +92,10 @@ def _doubt_width(run: "Run") -> tuple[AccuracyWarning, ...]:
 
 
 def _doubt_jumps(run: "Run") -> tuple[AccuracyWarning, ...]:
+    if not run.gained:
+        return ()
     records = run.records[: run.count]
-    seen = records["jump"].sum() + np.trapezoid(records["loss"], records["time"])
+    seen = records["jump"].sum() + records["lost"].sum()
     felt = LEAST_ENERGY * np.abs(records["force"]).max(initial=0.0) * run.contact.reach
     part = run.gained / max(seen, felt)
     if part <= 1e-2 * run.strictness:

@@ -76,13 +76,16 @@ class Landing:
 
     def expected_radius(self) -> float:
         """Radius of the stable contact at this height, m; 0 if there is none."""
-        radius = self.surface.open_frame * np.geomspace(1e-2, 1e4, 600)
-        height, force = self.heights(radius)
-        miss = height - self.base - force / self.lever
-        above = np.flatnonzero((miss[:-1] > 0) & (miss[1:] <= 0))
-        if not above.size:
-            return 0.0
-        i = above[0]
+        radius = self.surface.open_frame * np.geomspace(1e-2, 1e4, 100)
+        for closer in (True, False):
+            height, force = self.heights(radius)
+            miss = height - self.base - force / self.lever
+            above = np.flatnonzero((miss[:-1] > 0) & (miss[1:] <= 0))
+            if not above.size:
+                return 0.0
+            i = above[0]
+            if closer:
+                radius = np.append(radius[:i], np.linspace(radius[i], radius[i + 1], 10))
         return float(radius[i] + (radius[i + 1] - radius[i]) * miss[i] / (miss[i] - miss[i + 1]))
 
     def crack(self, radius: float, height: float) -> np.ndarray:
@@ -174,7 +177,7 @@ class Landing:
             radius, height = radius + change, next_height
         else:
             return None
-        return self.solve(radius, shape, height, False)
+        return self.solve(radius, shape, self.base if self.lever == inf else height, False)
 
 
 def land(
@@ -217,9 +220,6 @@ def _snap_in(surface: "Surface") -> tuple[float, ...] | None:
     surface.clock["frame"] = radius
     surface.clock["deflection"] = height - landing.base
     record = surface.take(shape, v)
-    if not surface.bends:  # where the landing was found to a thousandth of a gap
-        surface.clock["deflection"] = 0.0
-        record = (record[0], landing.base, *record[2:])
     surface.clock["edge"] = surface.clock["edge_earlier"] = radius
     surface.clock["felt"] = surface.clock["felt_earlier"] = radius
     surface.clock["rides"] = 1.0

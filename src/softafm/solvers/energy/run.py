@@ -6,9 +6,17 @@ from typing import Any, cast
 
 import numpy as np
 
+from softafm.compiled.functions import enter
 from softafm.errors import DivergedError
 from softafm.instrument.lever import Lever
-from softafm.instrument.motion import Motion, Turning, bound_speed, count_periods, find_setpoint
+from softafm.instrument.motion import (
+    Motion,
+    Turning,
+    bound_speed,
+    count_periods,
+    find_setpoint,
+    is_steady,
+)
 from softafm.solvers.energy.dent import Dent
 from softafm.solvers.energy.doubts import list_doubts, suggest_longer_range
 from softafm.solvers.energy.fall import creep_down, is_jump
@@ -50,6 +58,7 @@ from softafm.solvers.history import History
 from softafm.solvers.periodic import PeriodicMemory
 from softafm.solvers.shapes import Shape, interpolate_to_common_radii
 
+_advance = enter(advance)
 _CHUNK = 256
 """Records that one call of the compiled loop may fill."""
 
@@ -106,8 +115,8 @@ class Run:
         self.cycle, self.unsteady = 1, 0.0
         # How well a memory can be found is limited by the errors of a cycle.
         self.steadiness = STEADY * self.strictness**0.5
-        self.falls: list[float] = []
-        self.jumps: list[float] = []
+        self.falls: list[int] = []  # the records that they led to
+        self.jumps: list[int] = []
         self.gained = 0.0
         self.stored = 0.0, 0.0
 
@@ -117,7 +126,7 @@ class Run:
         self._settle()
         if surface.clock["edge"] > 0 and self.cycle == 1:
             self._fall_at_start()
-        self.stored = surface.stored_energy(), 0.0
+        stored = self._find_stored()
         trigger = self._trigger(-np.inf)
         if surface.clock["force"] >= trigger:
             raise ValueError(
@@ -152,7 +161,7 @@ class Run:
                 if outcome == TRIGGERED:
                     self._turn()
                 yield (surface.time - first) / (self.breaks[-1] - first)
-        self.stored = self.stored[0], surface.stored_energy()
+        self.stored = stored, self._find_stored()
 
     def cycles(self) -> Iterator[float]:
         """Run the motion over and over, until surface and memory end a cycle as they began it.
@@ -212,7 +221,7 @@ class Run:
 
     def _next_stop(self) -> float | None:
         """Return the next instant that a step has to meet, s, or None at the end."""
-        ahead = np.searchsorted(self.stops, self.surface.time, side="right")
+        ahead = self.stops.searchsorted(self.surface.time, side="right")
         return float(self.stops[ahead]) if ahead < self.stops.size else None
 
     def _trigger(self, stop: float) -> float:
@@ -255,7 +264,7 @@ class Run:
         )
         records = self._free_records()
         shapes = np.empty((0 if self.shapes is None else _CHUNK, surface.mesh.nodes.size))
-        outcome, count = advance(
+        outcome, count = _advance(
             *surface.functions[:-1], surface.parameters, surface.background, surface.mesh,
             surface.table, controls, surface.fields, surface.clock, surface.lever_state,
             surface.lag_energy, records, shapes, surface.room(),
@@ -273,6 +282,10 @@ class Run:
             longer[: self.count] = self.records[: self.count]
             self.records = longer
         return self.records[self.count : self.count + _CHUNK]
+
+    def _find_stored(self) -> float:
+        """Return the energy stored now, J; 0 in a steady cycle, which ends as it began."""
+        return 0.0 if is_steady(self.motion) else self.surface.stored_energy()
 
     def _settle(self) -> None:
         """Equilibrate at frozen memory, and keep a record of it."""
@@ -314,7 +327,7 @@ class Run:
         )
         clock["time"], clock["step"] = end, 10 * self.controls.shortest_step
         self._settle() if record is None else self._note(record)
-        self.falls.append(surface.time)
+        self.falls.append(self.count - 1)
         if is_jump(clock, gap, edge):
             self._note_jump(before - surface.energy())
         else:
@@ -328,7 +341,7 @@ class Run:
         """
         if not np.isfinite(released):
             released = -np.inf
-        self.jumps.append(self.surface.time)
+        self.jumps.append(self.count - 1)
         self.records[self.count - 1]["jump"] = max(released, 0.0)
         self.gained -= min(released, 0.0)
 
@@ -349,10 +362,9 @@ class Run:
         surface = self.surface
         records = self.records[: self.count]
         time = records["time"]
-        jumped = np.isin(time, self.jumps)
-        breaks = np.flatnonzero(np.isin(time, self.breaks[1:-1]))
-        fallen = np.flatnonzero(np.isin(time, self.falls))
-        cuts = sorted([(i, i + 1) for i in breaks] + [(i, i) for i in fallen])
+        breaks = np.searchsorted(time, self.breaks[1:-1])
+        cuts = [(int(i), int(i) + 1) for i in breaks if i < time.size]
+        cuts = sorted(cuts + [(i, i) for i in self.falls])
         starts = [0] + [start for start, _ in cuts]
         ends = [end for _, end in cuts] + [time.size]
         return History(
@@ -363,10 +375,10 @@ class Run:
             axis_deformation=records["axis"],
             viscous_power=records["loss"],
             viscous_energy=records["lost"],
-            pieces=tuple(slice(int(a), int(b)) for a, b in zip(starts, ends, strict=True)),
+            pieces=tuple(slice(a, b) for a, b in zip(starts, ends, strict=True)),
             motion=self.motion,
-            jump_time=time[jumped],
-            jump_energy=records["jump"][jumped],
+            jump_time=time[self.jumps],
+            jump_energy=records["jump"][self.jumps],
             profiles=interpolate_to_common_radii(self.shapes or []) if self.keep_shapes else None,
             diagnostics={
                 "steps": time.size - 1,
@@ -388,7 +400,7 @@ class Run:
 def _sum_up(records: np.ndarray) -> np.ndarray:
     """Return the largest, smallest and mean force of a cycle, N."""
     force, time = records["force"], records["time"]
-    mean = np.trapezoid(force, time) / (time[-1] - time[0])
+    mean = np.diff(time) @ (force[1:] + force[:-1]) / 2 / (time[-1] - time[0])
     return np.array([force.max(), force.min(), mean])
 
 

@@ -12,7 +12,19 @@ from softafm.instrument.lever import Lever, check_lever, make_lever
 from softafm.instrument.motion import Motion, count_periods, is_steady
 from softafm.instrument.motions import find_lowest_height
 from softafm.progress import Progress
+from softafm.solvers.energy.tuning import FAR_SOFTER
 from softafm.solvers.history import History
+
+_RUN, _CYCLE = 5e-3, 4e-3
+"""Time of a run besides its steps, and that of a ramp or a cycle without adhesion, s on one core.
+All these are such that most of the runs of ``benchmarks/accuracy.py`` take between a third of the
+forecast and three times as long."""
+_LENGTH, _STEEP_LENGTH = 4e-5, 2e-4
+"""Time in which an edge crosses a cohesive length, s, and where a steep tip holds it."""
+_RIDE, _RIDE_WITH_MEMORY = 4e-3, 7.5e-3
+"""Times in which it rides over some, s: for every tenfold number, and for its power of 0.38."""
+_MOST_CYCLES = 30.0
+"""What the longest search for a steady cycle is worth: far from it a cycle takes few steps."""
 
 
 @dataclass(frozen=True)
@@ -95,7 +107,8 @@ class Energy:
             raise ValueError(
                 f"stiffness = {stiffness:g} N/m: must be left out where there is a lever"
             )
-        check_lever(lever)
+        else:
+            check_lever(lever)
         started = perf_counter()
         with announce_compilation(self.kind):
             from softafm.solvers.energy.run import Run
@@ -111,14 +124,31 @@ class Energy:
 
     def expected_seconds(self, contact: Any, motion: Motion) -> float:
         """Order of magnitude of a run at the default tolerance, s on one core, as measured."""
-        lengths = count_cohesive_lengths(contact, motion)
-        crossing = 2e-5 * lengths
-        if not is_steady(motion):
-            # A slack edge rides, and its memory with it, over many lengths in a step.
-            rigid = contact.body.compliance.instantaneous == contact.body.compliance.relaxed
-            riding = 8e-3 * log10(1 + lengths) if rigid else 7.5e-3 * lengths**0.38
-            crossing = min(crossing, riding)
-        return 4e-3 * count_periods(motion) + crossing
+        lengths = count_cohesive_lengths(contact, motion) / count_periods(motion)
+        creep = contact.body.compliance
+        if contact.steep:
+            crossing = _STEEP_LENGTH * lengths
+        elif is_steady(motion):
+            crossing = _LENGTH * lengths
+        else:  # a slack edge rides over many lengths in a step, and its memory with it
+            duration = float(motion.breaks[-1] - motion.breaks[0])
+            softened = float(creep.at(duration)) / creep.instantaneous - 1
+            evenly = creep.relaxed == creep.instantaneous or softened >= FAR_SOFTER
+            riding = _RIDE * log10(1 + lengths) if evenly else _RIDE_WITH_MEMORY * lengths**0.38
+            crossing = min(_LENGTH * lengths, riding)
+        return _RUN + estimate_cycles(contact, motion) * (_CYCLE + crossing)
+
+
+def estimate_cycles(contact: Any, motion: Motion) -> float:
+    """Return how many cycles a run takes, until a steady one is found by experience.
+
+    The more, the more the sample would still creep after a cycle, relative to what it does in one.
+    """
+    creep = contact.body.compliance
+    if not is_steady(motion) or creep.relaxed == creep.instantaneous:
+        return count_periods(motion)
+    crept = float(creep.at(float(motion.breaks[-1] - motion.breaks[0])))
+    return min(1 + 2 * (creep.relaxed / crept - 1) ** 0.4, _MOST_CYCLES)
 
 
 def count_cohesive_lengths(contact: Any, motion: Motion) -> float:

@@ -21,6 +21,7 @@ from softafm.solvers.energy.layout import (
     ORIGIN,
     Background,
     Functions,
+    Mesh,
     Parameters,
     Room,
     Table,
@@ -111,11 +112,11 @@ class Surface:
         # Where the tip rises steeply, at the rim of a punch, it holds the edge; and a sample that
         # is all memory parts evenly, without an edge.
         free = not contact.steep and find_softening(self.parameters, period) < FAR_SOFTER
-        tabor = contact.tabor_after(period) if contact.adhesive else 0.0
-        slack = free and tabor > SLACK
+        tabor = contact.tabor_after(period) if free and contact.adhesive else 0.0
+        slack = tabor > SLACK
         self.ride_from = RIDE_FROM * self.open_frame if slack else inf
         # What a steady cycle gathers is filtered at fixed radii, and a trace knows one stiffness.
-        traced = free and tabor > SLACKER and not is_steady(motion) and isinf(contact.body.length)
+        traced = tabor > SLACKER and not is_steady(motion) and isinf(contact.body.length)
         self.trace_from = TRACE_FROM if traced else inf
         self.too_slow = TOO_SLOW[1 if is_steady(motion) else 0] * period
         self.held = choose_spacing_held(self.parameters, duration)
@@ -123,6 +124,7 @@ class Surface:
         self.level = self.first_level = self.find_level(0.4 * contact.open_width / self.open_frame)
         self.meshes = self.most_nodes = 0
         self.finest_spacing, self.finest_used = inf, 0
+        self._grids: dict[float, tuple[Mesh, Stiffness, Table]] = {}
         self.lay(self.build_mesh(self.level))
         self.archive = self.build_mesh(self.level), 0.0
         elements = self.parameters.retardation.size
@@ -147,15 +149,21 @@ class Surface:
         self.most_nodes = max(self.most_nodes, mesh.nodes.size)
         self.finest_spacing = min(self.finest_spacing, mesh.edge_spacing)
         self.finest_used = max(self.finest_used, self.level)
+        if mesh.edge_spacing not in self._grids:
+            self._grids[mesh.edge_spacing] = self._make_grid(mesh)
+        self.mesh, self.stiffness, self.table = self._grids[mesh.edge_spacing]
+
+    def _make_grid(self, mesh: UnitMesh) -> tuple[Mesh, Stiffness, Table]:
+        """Return a mesh as the kernels take it, and the stiffness of the body on it."""
         body = self.contact.body
-        self.stiffness = Stiffness(body, mesh)
-        shown = self.stiffness.uniform
-        found = np.empty((0, 0) if shown is not None else self.stiffness.entries.shape[1:])
+        stiffness = Stiffness(body, mesh)
+        shown = stiffness.uniform
+        found = np.empty((0, 0) if shown is not None else stiffness.entries.shape[1:])
         if shown is None:
             shown = found.view()
             shown.setflags(write=False)
-        self.mesh = make_mesh(mesh, shown, body.decay)
-        self.table = Table(self.stiffness.entries, 0.0, STEP, found)
+        table = Table(stiffness.entries, 0.0, STEP, found)
+        return make_mesh(mesh, shown, body.decay), stiffness, table
 
     def tabulate(self, frame: float) -> None:
         """Let the mesh have the stiffness in a frame, m, and the table reach to it."""
@@ -334,7 +342,7 @@ class Surface:
         elements = self.parameters.compliance[1:]
         self.fields[DEFORMATION] = u
         load = (v - u) / self.parameters.compliance[0]
-        strained = frame * mesh.stiffness @ (load - self.fields[LOAD])
+        strained = mesh.stiffness @ (frame * (load - self.fields[LOAD]))
         self.lag_energy += (0.5 * (load + self.fields[LOAD]) - memory) @ strained
         self.fields[LOAD] = load
         if len(self.background.values):
