@@ -45,6 +45,7 @@ from softafm.solvers.energy.tuning import (
     FINEST_GROWTH,
     GROWTH,
     GROWTH_IF_FAR_SOFTER,
+    GROWTH_IF_SLACK,
     HARDLY_SOFTER,
     HELD,
     HELD_IF_FAR_SOFTER,
@@ -118,6 +119,8 @@ class Surface:
         # What a steady cycle gathers is filtered at fixed radii, and a trace knows one stiffness.
         traced = tabor > SLACKER and not is_steady(motion) and isinf(contact.body.length)
         self.trace_from = TRACE_FROM if traced else inf
+        if slack and not traced:
+            self.growth = min(self.growth, GROWTH_IF_SLACK * min(1.0, strictness**0.17))
         self.too_slow = TOO_SLOW[1 if is_steady(motion) else 0] * period
         self.held = choose_spacing_held(self.parameters, duration)
         self.finest_level = max(0, ceil(log2(COARSEST_SPACING / finest_spacing)))

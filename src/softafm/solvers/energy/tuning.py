@@ -158,6 +158,10 @@ GROWTH_IF_FAR_SOFTER = 0.2
 """The same where a sample is all memory: the pull-off of a slow tap was 1.2 % off, that of a punch
 3 %."""
 
+GROWTH_IF_SLACK = 0.22
+"""The same where an edge rides, but no memory with it: the largest force of sticky taps, a fifth of
+the pull-off, was 4 % off."""
+
 APEX, FINEST_GROWTH = 2.5, 0.6
 """Radius of a round apex, in that of the contact, times the first is the part of that growth that
 a tip sharper than a paraboloid gets, down to the second (the pull-off of a cone pressed to nine
