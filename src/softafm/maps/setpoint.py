@@ -142,7 +142,7 @@ class Setpoint:
         """All solutions that the feedback can hold, from far to near."""
         taps = TapMap(
             lambda amplitude, approach: self.tap(contact, approach, amplitude),
-            self.drive.excess, self.amplitude, self.amplitude, contact.reach, self.tolerance,
+            self.drive, self.amplitude, self.amplitude, contact.reach, self.tolerance,
         )  # fmt: skip
         for _ in taps.explore():
             pass

@@ -10,7 +10,7 @@ from softafm.instrument.oscillator import Drive
 from softafm.modes.tap_map import TapMap
 from softafm.results.content import BRANCHES
 
-_APPROACHES, _AMPLITUDES = 2000, 400
+_AMPLITUDES = 400
 
 
 class Solutions(NamedTuple):
@@ -54,8 +54,7 @@ class AmplitudeCurve:
 
     def at_amplitudes(self, amplitudes: np.ndarray) -> Solutions:
         """All solutions of given amplitudes, m, shape (n,)."""
-        approaches = np.linspace(self._taps.farthest, self._taps.nearest, _APPROACHES)
-        row, approach = _find_zeros(lambda a, d: self._excess(a, d), amplitudes, approaches)
+        row, approach = _find_zeros(self._excess, amplitudes, self._taps.grid)
         step = 1e-3 * np.minimum(amplitudes[row], self._taps.unit)
         return self._solutions(row, amplitudes[row], approach, step)
 
@@ -91,7 +90,7 @@ class AmplitudeCurve:
         Beyond the closest approaches of the map they are those at its ends.
         """
         approach = np.subtract(height, amplitude)
-        within = np.clip(approach, self._taps.nearest, self._taps.farthest)
+        within = np.clip(approach, self._taps.nearest_at(amplitude), self._taps.farthest)
         return self._taps.virial_and_dissipation(amplitude, within)
 
     def is_too_weak(self, amplitude: np.ndarray, height: np.ndarray) -> np.ndarray:
@@ -99,8 +98,10 @@ class AmplitudeCurve:
         return self.drive.excess(amplitude, *self.tapped(amplitude, height)) > 0
 
     def _excess(self, amplitude: np.ndarray, approach: np.ndarray) -> np.ndarray:
+        """Excess of the force needed; NaN where no taps were run."""
         values = self._taps.virial_and_dissipation(amplitude, approach)
-        return self.drive.excess(amplitude, *values)
+        deeper = approach < self._taps.nearest_at(amplitude)
+        return np.where(deeper, np.nan, self.drive.excess(amplitude, *values))
 
     def _solutions(
         self, row: np.ndarray, amplitude: np.ndarray, approach: np.ndarray, step: Any
@@ -119,7 +120,7 @@ def _find_zeros(
 ) -> tuple[np.ndarray, np.ndarray]:
     """Zeros of function(row, point) between neighbours of ``points``, for every row at once.
 
-    Returns the indices of the rows and the zeros, to 1e-9 of the distance of neighbours; values of
+    Returns the indices of the rows and the zeros, to 1e-9 of the mean distance of neighbours; values of
     NaN have none.
     """
     from scipy.optimize.elementwise import find_root
@@ -127,6 +128,6 @@ def _find_zeros(
     values = function(rows[:, None], points[None, :])
     row, column = np.nonzero(values[:, :-1] * values[:, 1:] < 0)
     bracket = points[column], points[column + 1]
-    close = {"xatol": 1e-9 * np.abs(np.diff(points)).max(), "xrtol": 0.0}
+    close = {"xatol": 1e-9 * np.abs(np.diff(points)).mean(), "xrtol": 0.0}
     found = find_root(lambda x, y: function(y, x), bracket, args=(rows[row],), tolerances=close)
     return row, found.x

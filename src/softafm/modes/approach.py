@@ -137,7 +137,7 @@ def _simulate(inputs: Inputs, settings: Settings) -> Outcome:
         return np.array([found[name] for name in OBSERVABLES])
 
     taps = TapMap(
-        tap, drive.excess, ratios.min() * free_amplitude, ratios.max() * free_amplitude,
+        tap, drive, ratios.min() * free_amplitude, ratios.max() * free_amplitude,
         contact.reach, tolerance,
     )  # fmt: skip
     with make_reporter(settings.progress) as report:
