@@ -48,11 +48,18 @@ class TapLine:
         self.amplitude, self._unit = amplitude, unit
         self._samples: dict[float, np.ndarray] = {}
         self.failures: dict[float, DivergedError] = {}
+        self.cut = False
+        """Whether taps failed before the drive was spent."""
 
     @property
     def taps(self) -> int:
         """Number of taps so far."""
         return len(self._samples) + len(self.failures)
+
+    @property
+    def tried(self) -> list[float]:
+        """Closest approaches of all taps, m."""
+        return [*self._samples, *self.failures]
 
     @property
     def approaches(self) -> list[float]:
@@ -78,6 +85,13 @@ class TapLine:
             raise next(iter(self.failures.values()))
         yield from self._refine()
         self._finish()
+
+    def find_support(self, approach: float) -> list[float]:
+        """Approaches of the taps next to an approach: one with a result on either side at least."""
+        known = np.array(self.approaches)
+        at = np.clip(np.searchsorted(known, approach), 1, known.size - 1)
+        low, high = known[at - 1 : at + 1].tolist()
+        return [low, high, *(each for each in self.failures if low < each < high)]
 
     def interpolate(self, approach: np.ndarray, pair: bool) -> np.ndarray:
         """Observables over √A, (*shape, 7), or a ``pair``: virial and dissipation.
@@ -111,7 +125,8 @@ class TapLine:
             yield self.taps
             failed = 0 if found else failed + 1
             deep = i + 1 >= len(_INNER)
-            if failed == _FAILURES or (found and self._is_spent(self._samples[approach], deep)):
+            self.cut = failed == _FAILURES
+            if self.cut or (found and self._is_spent(self._samples[approach], deep)):
                 return
 
     def _is_spent(self, sample: np.ndarray, deep: bool) -> bool:

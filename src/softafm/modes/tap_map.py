@@ -75,10 +75,22 @@ class TapMap:
 
     def nearest_at(self, amplitude: ArrayLike) -> np.ndarray:
         """Closest approach, m, down to which amplitudes, m, were sampled on lines next to them."""
-        above = np.searchsorted(self._logs, np.log(amplitude))
         ends = np.array([line.nearest for line in self.lines])
-        last = ends.size - 1
-        return np.minimum(ends[np.clip(above - 1, 0, last)], ends[np.clip(above, 0, last)])
+        return ends[self._lines_about(amplitude)].min(axis=0)
+
+    def find_support(self, amplitude: float, approach: float) -> list[tuple[float, float]]:
+        """Amplitudes and closest approaches of the taps next to a point, m."""
+        lines = {int(i) for i in self._lines_about(amplitude)}
+        return [
+            (self.lines[i].amplitude, each)
+            for i in lines
+            for each in self.lines[i].find_support(approach)
+        ]
+
+    def _lines_about(self, amplitude: ArrayLike) -> np.ndarray:
+        """Indices of the lines below and above amplitudes, shape (2, *shape)."""
+        above = np.searchsorted(self._logs, np.log(amplitude))
+        return np.clip([above - 1, above], 0, self._logs.size - 1)
 
     @property
     def grid(self) -> np.ndarray:
