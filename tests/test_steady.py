@@ -352,6 +352,26 @@ def test_a_nonlinear_feedback_is_found():
     assert offs[-1] < 1e-6 * offs[0]
 
 
+@pytest.mark.parametrize(("most", "steepness"), [(1e2, 30.0), (1e4, 10.0)])
+def test_a_load_that_a_dent_makes_vanish_is_found(most, steepness):
+    # A rigid contact on a dent that creep digs slowly: far too much load at first, and then none.
+    fading = np.exp(-1 / Cycle.times)[:, None]
+
+    def gained(memory):
+        dent = (Cycle.compliances @ memory)[0]
+        return (1 - fading) * most * np.exp(-steepness * dent) * np.array([[1, 0.5, 0.2]] * 2)
+
+    seeker = PeriodicMemory(1.0, Cycle.compliances, Cycle.times, 1.0)
+    memory, offs = np.zeros((2, 3)), []
+    while len(offs) < 100 and (not offs or offs[-1] > 1e-3):
+        start = memory
+        memory, off = seeker.next_start(start, gained(start))
+        offs.append(off)
+    assert offs[-1] <= 1e-3
+    deepest = 5 * most * np.exp(-steepness * (Cycle.compliances @ start)[0])
+    assert (Cycle.compliances @ start)[0] == pytest.approx(deepest, abs=2e-3)
+
+
 @pytest.mark.parametrize(
     ("misses", "scatter"),
     [

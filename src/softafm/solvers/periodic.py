@@ -14,6 +14,9 @@ import numpy as np
 
 _DEPTH = 4
 _FAR, _PACE = 3.0, 0.3
+_SLOW, _STALLS, _TIGHT = 0.7, 2, 0.1
+"""Part of the least miss that counts as progress, cycles without it, and part of the miss
+within which starts enclose the periodic memory as well as they can."""
 
 
 class PeriodicMemory:
@@ -34,6 +37,9 @@ class PeriodicMemory:
         self, period: float, compliances: np.ndarray, retardation_times: np.ndarray, unit: float
     ):
         self._unit, self._pace, self._last = unit, _PACE, np.inf
+        self._node: int | None = None
+        self._low, self._high = -np.inf, np.inf
+        self._stalls, self._least = 0, np.inf
         self._gaining = -np.expm1(-period / np.asarray(retardation_times))[:, None]
         self._compliances = np.asarray(compliances)[:, None]
         self._trials: list[np.ndarray] = []
@@ -46,7 +52,17 @@ class PeriodicMemory:
         Pa·m. The distance is that of the displacement Σ J_m y_m, largest over the nodes.
         """
         miss = gained / self._gaining - start
-        off = float(np.abs(np.sum(self._compliances * miss, axis=0)).max(initial=0.0))
+        shape = self._displace(miss)
+        off = float(np.abs(shape).max(initial=0.0))
+        if self._node is None:
+            self._node = int(np.abs(shape).argmax())
+            self._sign = float(np.sign(shape[self._node]))
+        self._enclose(start, start + miss)
+        self._stalls = 0 if off < _SLOW * self._least else self._stalls + 1
+        self._least = min(self._least, off)
+        enclosed = np.isfinite(self._high - self._low)
+        if enclosed and self._stalls >= _STALLS:
+            return self._halve(start, miss, off), off
         if off > _FAR * self._unit:
             self._trials.clear()
             self._misses.clear()
@@ -57,6 +73,37 @@ class PeriodicMemory:
         self._misses.append(miss)
         del self._trials[: -_DEPTH - 1], self._misses[: -_DEPTH - 1]
         return self._mix(), off
+
+    def _displace(self, memory: np.ndarray) -> np.ndarray:
+        return np.asarray(np.sum(self._compliances * memory, axis=0))
+
+    def _size(self, memory: np.ndarray) -> float:
+        """Displacement, m, where the first cycle moved the surface most, and that way."""
+        return self._sign * float(self._displace(memory)[self._node])
+
+    def _enclose(self, start: np.ndarray, loaded: np.ndarray) -> None:
+        """Keep the largest start that loads more than itself, and the smallest that loads less."""
+        size = self._size(start)
+        if self._size(loaded) > size:
+            self._low, self._load = size, loaded
+            self._high = self._high if self._high > size else np.inf
+        else:
+            self._high = size
+            self._low = self._low if self._low < size else -np.inf
+
+    def _halve(self, start: np.ndarray, miss: np.ndarray, off: float) -> np.ndarray:
+        """Go half the way between starts that load too much and too little.
+
+        Where these are the same, what is left is of another shape: mix, and enclose anew.
+        """
+        self._trials = [*self._trials, start][-_DEPTH:]
+        self._misses = [*self._misses, miss][-_DEPTH:]
+        if self._high - self._low < _TIGHT * off:
+            self._low, self._high = -np.inf, np.inf
+            step = self._mix() - start
+            longest = float(np.abs(self._displace(step)).max())
+            return start + min(1.0, _PACE * off / longest) * step
+        return self._load * ((self._low + self._high) / 2 / self._size(self._load))
 
     def _mix(self) -> np.ndarray:
         """Move from where the recent misses, seen as linear, would combine to the least."""
