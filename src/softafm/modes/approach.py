@@ -4,7 +4,7 @@ Rajabifar et al. 2021, equations (29) to (32), and their general form off resona
 """
 
 import json
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import replace
 from functools import partial
 from typing import TYPE_CHECKING
@@ -53,7 +53,7 @@ if TYPE_CHECKING:
 _HEIGHTS = 241
 _PRECISE = 0.1
 """Tolerance, in that which is asked for, of taps that tell whether two solutions exist."""
-_TAPS = 130
+_TAPS = 80
 """How many taps an approach curve takes, by experience."""
 
 
@@ -75,7 +75,8 @@ def approach_curve(
     The tip oscillates about the mean height Z with amplitude A, in a steady cycle each, and the
     drive stays what it is. Where several heights belong to one amplitude all are found, and which
     of them attract follows from the slow drift of amplitude and phase
-    (``softafm.instrument.oscillator``).
+    (``softafm.instrument.oscillator``). Heights are sought down to where the lowest point of the
+    tip lies five amplitudes below the surface, long after it has ceased to come off.
 
     Parameters
     ----------
@@ -128,7 +129,7 @@ def _simulate(inputs: Inputs, settings: Settings) -> Outcome:
     drive, frequency = make_drive(inputs.cantilever, free_amplitude, sweep.drive_frequency)
 
     doubts: list[Placed] = []
-    audits: dict[tuple[float, float], Audit] = {}
+    audits: dict[tuple[float, float], Audit | None] = {}
 
     def tap(amplitude: float, approach: float, tolerance: float = tolerance) -> np.ndarray:
         warned: list[AccuracyWarning] = []
@@ -141,6 +142,7 @@ def _simulate(inputs: Inputs, settings: Settings) -> Outcome:
             refuse_unsteady(warned)
             refuse_gain(found.energies, drive, amplitude, tolerance)
         except DivergedError as error:
+            audits[place] = None
             doubts.append((place, AccuracyWarning(f"a tap has no result: {error}")))
             raise
         audits[place] = found
@@ -158,8 +160,9 @@ def _simulate(inputs: Inputs, settings: Settings) -> Outcome:
                 report(1 - np.exp(-done / 80), f"{done} taps")
     curve = AmplitudeCurve(taps, drive)
     found, grazing = solve_amplitudes(
-        curve, ratios * free_amplitude, partial(tap, tolerance=_PRECISE * tolerance), tolerance
-    )
+        curve, ratios * free_amplitude,
+        partial(tap, tolerance=max(_PRECISE * tolerance, 1e-5)), contact.reach, tolerance,
+    )  # fmt: skip
     heights = found.amplitude + found.approach
     if heights.size:
         heights = np.linspace(heights.max(), heights.min(), _HEIGHTS)
@@ -190,22 +193,22 @@ def _simulate(inputs: Inputs, settings: Settings) -> Outcome:
         for name, row in zip(names, swept, strict=True):
             data[f"{direction}_{name}"] = ("sweep_height", row)
     return Outcome(
-        parts, solver, tolerance, data, coordinates, tuple(warned), {"taps": taps.taps},
-        write_audits([audits[each] for each in decisive if each in audits]),
+        parts, solver, tolerance, data, coordinates, tuple(warned), {"taps": len(audits)},
+        write_audits([each for place in decisive if (each := audits.get(place)) is not None]),
     )  # fmt: skip
 
 
 def _find_decisive(
-    taps: TapMap, found: Solutions, audits: dict[tuple[float, float], Audit]
+    taps: TapMap, found: Solutions, tapped: Iterable[tuple[float, float]]
 ) -> set[tuple[float, float]]:
     """Return amplitudes and closest approaches of the taps that solutions rest on.
 
     These are the taps next to them on the map and those that confirm them; all if there is none.
     """
-    tapped = {(line.amplitude, each) for line in taps.lines for each in line.tried}
+    mapped = {(line.amplitude, each) for line in taps.lines for each in line.tried}
     places = zip(found.amplitude.tolist(), found.approach.tolist(), strict=True)
     near = {each for place in places for each in taps.find_support(*place)}
-    return near | (set(audits) - tapped) if near else tapped
+    return near | (set(tapped) - mapped) if near else mapped
 
 
 def _describe_place(tap: tuple[float, float]) -> str:

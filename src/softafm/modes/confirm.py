@@ -21,9 +21,9 @@ _FIRST, _MOST_TAPS = 16, 5
 _CLOSE, _FAR, _GRAZING, _MEET = 0.2, 2.0, 1.0, 5e-3
 """Tolerances that the excess may be off where slopes give the rest, where a solution holds, and
 where a tap decides whether two solutions meet, and where it cannot tell either."""
-_NEAR, _STEP, _FARTHEST = 0.1, 1e-2, 0.1
+_NEAR, _STEP, _FARTHEST, _ASIDE = 0.1, 1e-2, 0.1, 0.25
 """Units that a height may be off, and over which slopes are taken; part of the depth by which one
-moves at most, at least a unit."""
+moves at most, at least a unit; units between taps where two solutions may meet."""
 _LOSS, _FAINT = 2.0, 4e-4
 """Tolerances that a dissipation may be off, relative to itself or to this share of the largest
 force times the amplitude."""
@@ -81,20 +81,26 @@ def confirm_solutions(
 
 
 def solve_amplitudes(
-    curve: AmplitudeCurve, amplitudes: np.ndarray, precise_tap: Tap, tolerance: float
+    curve: AmplitudeCurve, amplitudes: np.ndarray, precise_tap: Tap, unit: float, tolerance: float
 ) -> tuple[Solutions, list[Placed]]:
     """Return the solutions of amplitudes, m, on a map, and warnings of those that may be amiss.
 
-    Where two of them nearly meet, or have just parted, a precise tap decides.
+    Where two of them nearly meet, or have just parted, three precise taps decide, by a parabola.
     """
     corrections: list[tuple[int, float, float]] = []
     doubts: list[Placed] = []
-    for row, approach in curve.find_grazing(amplitudes, _GRAZING * tolerance):
+    for row, place in curve.find_grazing(amplitudes, _GRAZING * tolerance):
         amplitude = float(amplitudes[row])
+        approaches = place + unit * np.array([-_ASIDE, 0.0, _ASIDE])
         try:
-            found = float(curve.drive.excess(amplitude, *precise_tap(amplitude, approach)[:2]))
+            taps = [precise_tap(amplitude, each) for each in approaches.tolist()]
         except DivergedError:  # of which the tap warns
             continue
+        excesses = [curve.drive.excess(amplitude, *values[:2]) for values in taps]
+        bend, slope, middle = np.polyfit([-1, 0, 1], excesses, 2)
+        turn = float(np.clip(-slope / (2 * bend), -1, 1)) if bend else 0.0
+        found = float(np.polyval([bend, slope, middle], turn))
+        approach = place + turn * _ASIDE * unit
         corrections.append((row, approach, found - float(curve.excess(amplitude, approach))))
         if abs(found) < _MEET * tolerance:
             text = (
