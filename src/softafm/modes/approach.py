@@ -43,6 +43,7 @@ from softafm.modes.tap_map import OBSERVABLES, TapMap
 from softafm.modes.tapping import observe_taps
 from softafm.progress import Progress, make_reporter
 from softafm.results.content import DIRECTIONS, Labelled, observables
+from softafm.solvers.energy import Energy
 from softafm.solvers.own import solve
 from softafm.solvers.solver import Solver
 from softafm.units.quantities import write_quantity
@@ -53,6 +54,8 @@ if TYPE_CHECKING:
 _HEIGHTS = 241
 _PRECISE = 0.1
 """Tolerance, in that which is asked for, of taps that tell whether two solutions exist."""
+_MOST_STEPS = 10_000
+"""Steps of a tap at a tolerance of 1e-2, beyond which it counts as failed."""
 _TAPS = 80
 """How many taps an approach curve takes, by experience."""
 
@@ -75,8 +78,7 @@ def approach_curve(
     The tip oscillates about the mean height Z with amplitude A, in a steady cycle each, and the
     drive stays what it is. Where several heights belong to one amplitude all are found, and which
     of them attract follows from the slow drift of amplitude and phase
-    (``softafm.instrument.oscillator``). Heights are sought down to where the lowest point of the
-    tip lies five amplitudes below the surface, long after it has ceased to come off.
+    (``softafm.instrument.oscillator``).
 
     Parameters
     ----------
@@ -128,6 +130,7 @@ def _simulate(inputs: Inputs, settings: Settings) -> Outcome:
     free_amplitude = check_positive("free_amplitude", sweep.free_amplitude, "m")
     drive, frequency = make_drive(inputs.cantilever, free_amplitude, sweep.drive_frequency)
 
+    bounded = _bound_steps(solver, tolerance)
     doubts: list[Placed] = []
     audits: dict[tuple[float, float], Audit | None] = {}
 
@@ -137,7 +140,7 @@ def _simulate(inputs: Inputs, settings: Settings) -> Outcome:
         try:
             with collect_warnings(warned):
                 motion = Sine(amplitude + approach, amplitude, frequency, "steady")
-                history = solve(solver, contact, motion, tolerance=tolerance)
+                history = solve(bounded, contact, motion, tolerance=tolerance)
             found = audit(contact, history, tolerance)
             refuse_unsteady(warned)
             refuse_gain(found.energies, drive, amplitude, tolerance)
@@ -196,6 +199,14 @@ def _simulate(inputs: Inputs, settings: Settings) -> Outcome:
         parts, solver, tolerance, data, coordinates, tuple(warned), {"taps": len(audits)},
         write_audits([each for place in decisive if (each := audits.get(place)) is not None]),
     )  # fmt: skip
+
+
+def _bound_steps(solver: Solver, tolerance: float) -> Solver:
+    """Return a solver that gives up on taps that take far more steps than others."""
+    if not isinstance(solver, Energy):
+        return solver
+    most = int(_MOST_STEPS * (1e-2 / tolerance) ** 0.5)
+    return replace(solver, most_steps=min(solver.most_steps, most))
 
 
 def _find_decisive(

@@ -19,8 +19,9 @@ OBSERVABLES = TAPPED
 _LINES = 5
 _FARTHEST = 500.0
 """Units up to which the far end is sought."""
-_DEEPEST, _LEAST = 5.0, 50.0
-"""Amplitudes down to which solutions are sought, and units that count as deep at least."""
+_DEEPEST, _CUT = 3000.0, 10.0
+"""Units down to which solutions are sought, and from which taps of one amplitude that fail are not
+tried with another."""
 _FREE = 0.1
 """Part of the free excess that a tap may be off at the far end."""
 _PARTS = 12
@@ -60,10 +61,12 @@ class TapMap:
         Raises ``DivergedError`` if no tap of a line has a result.
         """
         self.farthest = self._find_far_end()
+        deepest = -_DEEPEST * self.unit
         for line in self.lines:
-            deepest = -max(_DEEPEST * line.amplitude, _LEAST * self.unit)
             for _ in line.explore(self.farthest, deepest):
                 yield self.taps
+            if line.cut and line.nearest < -_CUT * self.unit:
+                deepest = max(deepest, line.nearest)
 
     def virial_and_dissipation(self, amplitude: ArrayLike, approach: ArrayLike) -> np.ndarray:
         """V and E, J, at amplitudes and closest approaches, m: shape (2, *broadcast)."""
