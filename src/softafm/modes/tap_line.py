@@ -15,7 +15,7 @@ _AWAY, _HEIGHT = 10.0, 0.3
 """Of an excess, and of the rise along d over a unit: what may be missed, with 1, in tolerances."""
 _DOUBT = 0.25
 """Part of that by which two interpolations differ where a tap decides."""
-_INNER, _DEEPER = (0.3, -0.4, -1.1, -2.0), 1.5
+_INNER, _DEEPER = (0.75, 0.3, -0.4, -1.1, -2.0), 1.5
 """Closest approaches where the sample is met, in units, and the ratio of those that follow."""
 _SPENT, _TOO_MUCH = 0.1, 1.2
 """Excess of a repelled tap deep in the sample, and repulsion over the force of the drive, beyond
@@ -100,7 +100,7 @@ class TapLine:
         """
         interpolant, slope = self._pair if pair else self._all
         deeper = np.minimum(approach - self.nearest, 0.0)
-        return interpolant(approach - deeper) + deeper[..., None] * slope
+        return interpolant(np.maximum(approach, self.nearest)) + deeper[..., None] * slope
 
     def _try(self, approach: float) -> bool:
         """Whether a tap has a result; it is run if it has not been."""

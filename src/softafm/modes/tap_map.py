@@ -19,7 +19,7 @@ OBSERVABLES = TAPPED
 _LINES = 5
 _FARTHEST = 500.0
 """Units up to which the far end is sought."""
-_DEEPEST, _CUT = 3000.0, 10.0
+_DEEPEST, _CUT = 4500.0, 10.0
 """Units down to which solutions are sought, and from which taps of one amplitude that fail are not
 tried with another."""
 _FREE = 0.1
