@@ -18,7 +18,7 @@ from softafm.modes.amplitude_curve import AmplitudeCurve, Solutions
 from softafm.modes.tap_map import OBSERVABLES, TapMap
 
 _FIRST, _MOST_TAPS = 16, 5
-_CLOSE, _FAR, _GRAZING, _MEET = 0.2, 2.0, 1.5, 5e-3
+_CLOSE, _FAR, _GRAZING, _MEET = 0.2, 1.0, 1.5, 5e-3
 """Tolerances that the excess may be off where slopes give the rest, where a solution holds, and
 where a tap decides whether two solutions meet, and where it cannot tell either."""
 _NEAR, _STEP, _FARTHEST, _ASIDE = 0.1, 1e-2, 0.1, 0.25
@@ -164,7 +164,8 @@ def _settle(
         far, near = (taps.observables(amplitude, best.approach + s) for s in (step, -step))
         slopes, slope = (far - near) / (2 * step), taps.excess_slope(amplitude, best.approach)
     off = -best.excess / slope if slope else np.inf
-    if abs(off) > _NEAR * taps.unit:
+    found = abs(best.excess) <= _FAR * tolerance or others == []
+    if abs(off) > _NEAR * taps.unit or not found:
         if abs(best.excess) <= _FAR * tolerance:
             return best.approach, best.values, None
         text = (
