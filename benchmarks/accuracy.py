@@ -6,7 +6,8 @@ observable is measured against itself: forces relative to the larger of itself a
 largest force; energies to the larger of itself and 2 % of the largest force times the range of the
 law, of taps times 2 % of the amplitude. Solutions of approach curves may be off by 1 % + 0.1 nm in
 height and 2 % in dissipation at tolerance 1e-2, in proportion at others; none may be missing or
-invented.
+invented. Warnings that doubt the model, or say what a table shows, excuse no error and are no false
+alarm: only those that doubt the numbers count as a warning.
 
 Results are added to a file, one JSON object a line, and what stands there already is not run again:
 take a new file for a new version of softafm.
@@ -37,6 +38,12 @@ from softafm.modes.regularise import regularise_contact
 FORCES = ("force_max", "force_min", "force_min_approach", "force_mean")
 ENERGIES = ("loop_energy", "virial", "dissipation", "viscous_loss")
 SOLUTIONS = ("mean_height", "dissipation", "force_max", "force_min")
+NO_DOUBT = (
+    "the lever does not move as the sine", "one amplitude has several stable",
+    "no height goes with any",
+)  # fmt: skip
+"""How warnings begin that do not doubt the numbers: of the model's second harmonic, which no
+tolerance mends, and of what a table holds."""
 SLOW, FACTOR = 60.0, 3.0
 """Time a run should not take, s of one core, and by what factor it may differ from the forecast."""
 
@@ -202,7 +209,7 @@ def judge(entry: dict) -> dict[str, bool]:
     """Return what can be said of a run."""
     completed, error = entry["ending"] == "completed", entry["error"]
     within = error is not None and error <= entry["tolerance"]
-    warned = bool(entry.get("warnings"))
+    warned = doubts_numbers(entry)
     slow = entry["seconds"] > SLOW
     gaps = entry["mode"] == "approach-curve"  # where there is no solution
     values = [] if gaps else list(entry.get("values", {}).values())
@@ -216,6 +223,12 @@ def judge(entry: dict) -> dict[str, bool]:
         "false alarm": within and warned,
         "cost": 1 / FACTOR <= entry["expected"] / max(entry["seconds"], 1e-3) <= FACTOR,
     }
+
+
+def doubts_numbers(entry: dict) -> bool:
+    """Return whether a run warned of its numbers."""
+    lines = entry.get("warnings", "").splitlines()
+    return any(not line.startswith(NO_DOUBT) for line in lines)
 
 
 def report(entries: list[dict], worst: int) -> None:
@@ -261,7 +274,7 @@ def describe(entry: dict) -> str:
         fate = f"{entry['error']:.2%} in {entry['worst']}"
         fate += f", finer ones differ by {entry['doubt']:.2%}" if "doubt" in entry else ""
     kinds = ", ".join(entry[key] for key in ("mode", "tip", "law", "sample"))
-    warned = "; warned" if entry.get("warnings") else ""
+    warned = "; warned" if doubts_numbers(entry) else ""
     return f"seed {entry['seed']}: {fate}{warned}; {kinds}, Tabor {entry['tabor']:.2g}"
 
 

@@ -1,5 +1,7 @@
 """Solutions of approach curves hold when they are tapped, whatever the map of taps missed."""
 
+from dataclasses import dataclass
+
 import numpy as np
 import pytest
 from scipy.optimize import brentq
@@ -37,10 +39,10 @@ def tap(case, ratio, height):
     return sa.tapping_cycle(contact, ratio * free, height, lever.frequency, tolerance=1e-3)
 
 
-def excess(case, ratio, height):
+def excess(case, ratio, height, quality=None):
     """Rajabifar et al. 2021, (29) and (30): squares of sine and cosine, less 1."""
     _, lever, free, _ = CASES[case]
-    found, k, Q = tap(case, ratio, height), lever.stiffness, lever.quality_factor
+    found, k, Q = tap(case, ratio, height), lever.stiffness, quality or lever.quality_factor
     amplitude = ratio * free
     sine = ratio * (1 + Q * float(found.dissipation) / (np.pi * k * amplitude**2))
     cosine = -2 * Q * float(found.virial) / (k * amplitude * free)
@@ -81,3 +83,65 @@ def test_soft_levers_need_no_more_taps_than_others():
         found = sa.tapping_cycle(contact, ratio * free, height, 160e3, tolerance=1e-3)
         cosine = -2 * 64.0 * float(found.virial) / (0.106 * ratio * free**2)
         assert np.hypot(cosine, ratio) == pytest.approx(1, abs=0.01)  # elastic: sin φ = A/A0
+
+
+def test_a_tap_decides_where_two_solutions_are_about_to_meet():
+    # At 0.71 of the free amplitude the attractive states are there by 1e-4 of the drive.
+    contact, _, free, _ = CASES["lennard-jones"]
+    lever, ratios = sa.Cantilever(28.1, 430.0, 278e3), [0.2, 0.705, 0.71, 0.715]
+    result = sa.approach_curve(contact, lever, free, ratios)
+    known = np.isfinite(result["mean_height"].sel(branch="attractive").values)
+    assert known.tolist() == [True, False, True, True]
+    near = np.linspace(0.2e-10, 1.2e-10, 11) + 0.71 * free
+    surplus = [excess("lennard-jones", 0.71, height, 430.0) for height in near]
+    assert 0 < max(surplus) < 1e-3  # a scan of its own finds them, too
+
+
+@pytest.mark.filterwarnings("ignore:the lever does not move as the sine:softafm.AccuracyWarning")
+def test_a_sample_that_is_dug_out_slowly_takes_few_taps():
+    # Deep taps of one that creeps for ten cycles never settle: nothing needs them.
+    contact = sa.Contact(
+        sa.Paraboloid(63.1e-9),
+        sa.KelvinVoigt(4.08e9, 3.41e-4, 0.323),
+        sa.Dugdale(4.12e-4, 4.02e-10, 7.39e5, 0.222),
+    )
+    lever, free = sa.Cantilever(0.736, 4.42, 32.6e3), 5.09e-9
+    result = sa.approach_curve(contact, lever, free, [0.45, 0.7, 0.9])
+    assert result.attrs["solver_taps"] < 100
+    heights = result["mean_height"].sel(branch="repulsive").values
+    for ratio, height in zip([0.45, 0.7, 0.9], heights, strict=True):
+        pushes = []
+        for off in (1e-11, -1e-11):
+            found = sa.tapping_cycle(contact, ratio * free, height + off, 32.6e3, tolerance=1e-3)
+            pushes.append(-2 * 4.42 * float(found.virial) / (0.736 * ratio * free**2))
+        assert np.hypot(pushes[0], ratio) < 1 < np.hypot(pushes[1], ratio)
+
+
+@dataclass(frozen=True)
+class GivesUp(sa.solvers.Energy):
+    """The usual solver, which gives up on taps that go deeper than a height, m."""
+
+    deepest: float = 0.0
+
+    def solve(self, contact, motion, **options):
+        if motion.mean_height - motion.amplitude < self.deepest:
+            raise sa.DivergedError("no stable surface found")
+        return super().solve(contact, motion, **options)
+
+
+def test_taps_that_fail_cost_no_curve_and_are_told():
+    contact, lever, free, _ = CASES["lennard-jones"]
+    whole = sa.approach_curve(contact, lever, free, [0.2, 0.9])
+    with pytest.warns(sa.AccuracyWarning) as told:
+        part = sa.approach_curve(contact, lever, free, [0.2, 0.9], solver=GivesUp(deepest=-0.4e-9))
+    attractive, repulsive = (
+        np.array([each["mean_height"].sel(branch=name).values for each in (whole, part)])
+        for name in ("attractive", "repulsive")
+    )
+    assert attractive[1] == pytest.approx(attractive[0], abs=5e-12)
+    assert np.isfinite(repulsive[0]).all()
+    assert np.isnan(repulsive[1]).all()
+    texts = [str(each.message) for each in told]
+    assert sum("solutions may be missing; no stable surface found" in text for text in texts) == 1
+    with pytest.raises(sa.DivergedError, match="no stable surface found"):
+        sa.approach_curve(contact, lever, free, [0.2, 0.9], solver=GivesUp(deepest=1.0))

@@ -17,9 +17,11 @@ from softafm.errors import AccuracyWarning, DivergedError
 from softafm.instrument.motions import Sine
 from softafm.instrument.oscillator import Drive
 from softafm.modes.amplitude_curve import AmplitudeCurve
+from softafm.modes.audit import audit
 from softafm.modes.driven import doubt_sine
 from softafm.modes.tap_map import OBSERVABLES, TapMap
 from softafm.modes.tapping import observe_taps
+from softafm.solvers.history import History
 from softafm.solvers.own import solve
 from softafm.solvers.solver import Solver
 
@@ -74,6 +76,8 @@ class Setpoint:
         Taps that were run.
     warned
         What the solver and ``doubt`` warned of since it was emptied.
+    last
+        The last tap, if it has not been audited.
     """
 
     drive: Drive
@@ -83,6 +87,7 @@ class Setpoint:
     tolerance: float
     taps: int = 0
     warned: list[AccuracyWarning] = field(default_factory=list)
+    last: tuple[Contact, History] | None = None
 
     def tap(self, contact: Contact, approach: float, amplitude: float | None = None) -> np.ndarray:
         """``OBSERVABLES`` of a steady tap of a closest approach, m."""
@@ -91,6 +96,7 @@ class Setpoint:
             motion = Sine(amplitude + approach, amplitude, self.frequency, "steady")
             history = solve(self.solver, contact, motion, tolerance=self.tolerance)
         self.taps += 1
+        self.last = contact, history
         found = observe_taps(contact, motion, history)
         return np.array([found[name] for name in OBSERVABLES])
 
@@ -99,7 +105,10 @@ class Setpoint:
         return float(self.drive.excess(self.amplitude, values[0], values[1]))
 
     def doubt(self, point: Point) -> None:
-        """Add a warning if the lever does not move as a sine."""
+        """Add what the audit of the last tap finds, and whether the lever moves as a sine."""
+        if self.last is not None:
+            self.warned.extend(audit(*self.last, self.tolerance).problems)
+            self.last = None
         if (doubtful := doubt_sine(self.drive, self.amplitude, *point.values[:2])) is not None:
             self.warned.append(doubtful)
 
@@ -142,7 +151,7 @@ class Setpoint:
         """All solutions that the feedback can hold, from far to near."""
         taps = TapMap(
             lambda amplitude, approach: self.tap(contact, approach, amplitude),
-            self.drive.excess, self.amplitude, self.amplitude, contact.reach, self.tolerance,
+            self.drive, self.amplitude, self.amplitude, contact.reach, self.tolerance,
         )  # fmt: skip
         for _ in taps.explore():
             pass

@@ -1,6 +1,6 @@
 """All pairs of amplitude and height that a driven lever can have, and those that it takes."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -10,7 +10,7 @@ from softafm.instrument.oscillator import Drive
 from softafm.modes.tap_map import TapMap
 from softafm.results.content import BRANCHES
 
-_APPROACHES, _AMPLITUDES = 2000, 400
+_AMPLITUDES = 400
 
 
 class Solutions(NamedTuple):
@@ -52,17 +52,46 @@ class AmplitudeCurve:
     def __init__(self, taps: TapMap, drive: Drive):
         self._taps, self.drive = taps, drive
 
-    def at_amplitudes(self, amplitudes: np.ndarray) -> Solutions:
-        """All solutions of given amplitudes, m, shape (n,)."""
-        approaches = np.linspace(self._taps.farthest, self._taps.nearest, _APPROACHES)
-        row, approach = _find_zeros(lambda a, d: self._excess(a, d), amplitudes, approaches)
+    def at_amplitudes(
+        self, amplitudes: np.ndarray, corrections: Sequence[tuple[int, float, float]] = ()
+    ) -> Solutions:
+        """All solutions of given amplitudes, m, shape (n,).
+
+        Parameters
+        ----------
+        corrections
+            Row, closest approach, m, and what is missing in the excess there, and less and less up
+            to a unit away.
+        """
+
+        def excess(row: np.ndarray, approach: np.ndarray) -> np.ndarray:
+            row = np.asarray(row, int)
+            values = self.excess(amplitudes[row], approach)
+            for where, place, missing in corrections:
+                share = np.maximum(0.0, 1 - np.abs(approach - place) / self._taps.unit)
+                values = values + missing * share * (row == where)
+            return values
+
+        row, approach = _find_zeros(excess, np.arange(amplitudes.size), self._taps.grid)
         step = 1e-3 * np.minimum(amplitudes[row], self._taps.unit)
         return self._solutions(row, amplitudes[row], approach, step)
+
+    def find_grazing(self, amplitudes: np.ndarray, excess: float) -> list[tuple[int, float]]:
+        """Rows of amplitudes, m, and closest approaches, m, where two solutions may nearly meet.
+
+        There the excess has an extremum along the approach of less than ``excess``.
+        """
+        grid = self._taps.grid
+        values = self.excess(amplitudes[:, None], grid[None, :])
+        before, here, after = values[:, :-2], values[:, 1:-1], values[:, 2:]
+        turns = (here - before) * (after - here) < 0
+        row, column = np.nonzero(turns & (np.abs(here) < excess))
+        return list(zip(row.tolist(), grid[column + 1].tolist(), strict=True))
 
     def at_heights(self, heights: np.ndarray) -> Solutions:
         """All solutions at given mean heights, m, shape (n,), within the amplitudes of the map."""
         amplitudes = np.linspace(self.lowest, self.highest, _AMPLITUDES)
-        row, amplitude = _find_zeros(lambda z, a: self._excess(a, z - a), heights, amplitudes)
+        row, amplitude = _find_zeros(lambda z, a: self.excess(a, z - a), heights, amplitudes)
         # Across the interval in which they were found: finer ripples of the map do not count.
         step = (amplitudes[1] - amplitudes[0]) / 2
         return self._solutions(row, amplitude, heights[row] - amplitude, step)
@@ -91,16 +120,18 @@ class AmplitudeCurve:
         Beyond the closest approaches of the map they are those at its ends.
         """
         approach = np.subtract(height, amplitude)
-        within = np.clip(approach, self._taps.nearest, self._taps.farthest)
+        within = np.clip(approach, self._taps.nearest_at(amplitude), self._taps.farthest)
         return self._taps.virial_and_dissipation(amplitude, within)
 
     def is_too_weak(self, amplitude: np.ndarray, height: np.ndarray) -> np.ndarray:
         """Whether the drive cannot hold amplitudes at mean heights, m."""
         return self.drive.excess(amplitude, *self.tapped(amplitude, height)) > 0
 
-    def _excess(self, amplitude: np.ndarray, approach: np.ndarray) -> np.ndarray:
+    def excess(self, amplitude: ArrayLike, approach: ArrayLike) -> np.ndarray:
+        """Excess of the force needed; NaN where no taps were run."""
         values = self._taps.virial_and_dissipation(amplitude, approach)
-        return self.drive.excess(amplitude, *values)
+        deeper = np.less(approach, self._taps.nearest_at(amplitude))
+        return np.where(deeper, np.nan, self.drive.excess(amplitude, *values))
 
     def _solutions(
         self, row: np.ndarray, amplitude: np.ndarray, approach: np.ndarray, step: Any
@@ -119,14 +150,14 @@ def _find_zeros(
 ) -> tuple[np.ndarray, np.ndarray]:
     """Zeros of function(row, point) between neighbours of ``points``, for every row at once.
 
-    Returns the indices of the rows and the zeros, to 1e-9 of the distance of neighbours; values of
-    NaN have none.
+    Returns the indices of the rows and the zeros, to 1e-9 of the mean distance of neighbours;
+    values of NaN have none.
     """
     from scipy.optimize.elementwise import find_root
 
     values = function(rows[:, None], points[None, :])
     row, column = np.nonzero(values[:, :-1] * values[:, 1:] < 0)
     bracket = points[column], points[column + 1]
-    close = {"xatol": 1e-9 * np.abs(np.diff(points)).max(), "xrtol": 0.0}
+    close = {"xatol": 1e-9 * np.abs(np.diff(points)).mean(), "xrtol": 0.0}
     found = find_root(lambda x, y: function(y, x), bracket, args=(rows[row],), tolerances=close)
     return row, found.x

@@ -4,8 +4,9 @@ Rajabifar et al. 2021, equations (29) to (32), and their general form off resona
 """
 
 import json
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import replace
+from functools import partial
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -15,19 +16,21 @@ from softafm.checks.callers import warn_caller
 from softafm.checks.gathering import Placed, collect_warnings, gather
 from softafm.checks.validate import check_positive, check_tolerance
 from softafm.contact import Contact
-from softafm.errors import AccuracyWarning
+from softafm.errors import AccuracyWarning, DivergedError
 from softafm.instrument.cantilever import Cantilever
 from softafm.instrument.motions import Sine
 from softafm.instrument.oscillator import Drive
 from softafm.modes.amplitude_curve import BRANCHES, AmplitudeCurve, Solutions
 from softafm.modes.audit import Audit, audit, write_audits
-from softafm.modes.confirm import Confirmed, confirm_solutions
+from softafm.modes.confirm import Confirmed, confirm_solutions, solve_amplitudes
 from softafm.modes.driven import (
     AmplitudeSweep,
     doubt_sine,
     estimate_deepest_tap,
     make_drive,
     ratios_of,
+    refuse_gain,
+    refuse_unsteady,
 )
 from softafm.modes.lever_sweep import sweep_lever
 from softafm.modes.mode import Mode
@@ -40,6 +43,7 @@ from softafm.modes.tap_map import OBSERVABLES, TapMap
 from softafm.modes.tapping import observe_taps
 from softafm.progress import Progress, make_reporter
 from softafm.results.content import DIRECTIONS, Labelled, observables
+from softafm.solvers.energy import Energy
 from softafm.solvers.own import solve
 from softafm.solvers.solver import Solver
 from softafm.units.quantities import write_quantity
@@ -48,7 +52,11 @@ if TYPE_CHECKING:
     from xarray import Dataset
 
 _HEIGHTS = 241
-_TAPS = 130
+_PRECISE = 0.1
+"""Tolerance, in that which is asked for, of taps that tell whether two solutions exist."""
+_MOST_STEPS = 10_000
+"""Steps of a tap at a tolerance of 1e-2, beyond which it counts as failed."""
+_TAPS = 80
 """How many taps an approach curve takes, by experience."""
 
 
@@ -122,22 +130,31 @@ def _simulate(inputs: Inputs, settings: Settings) -> Outcome:
     free_amplitude = check_positive("free_amplitude", sweep.free_amplitude, "m")
     drive, frequency = make_drive(inputs.cantilever, free_amplitude, sweep.drive_frequency)
 
+    bounded = _bound_steps(solver, tolerance)
     doubts: list[Placed] = []
-    audits: list[Audit] = []
+    audits: dict[tuple[float, float], Audit | None] = {}
 
-    def tap(amplitude: float, approach: float) -> np.ndarray:
+    def tap(amplitude: float, approach: float, tolerance: float = tolerance) -> np.ndarray:
         warned: list[AccuracyWarning] = []
-        with collect_warnings(warned):
-            motion = Sine(amplitude + approach, amplitude, frequency, "steady")
-            history = solve(solver, contact, motion, tolerance=tolerance)
-        audits.append(audit(contact, history, tolerance))
-        warned += audits[-1].problems
-        doubts.extend(((amplitude, approach), warning) for warning in warned)
-        found = observe_taps(contact, motion, history)
-        return np.array([found[name] for name in OBSERVABLES])
+        place = amplitude, approach
+        try:
+            with collect_warnings(warned):
+                motion = Sine(amplitude + approach, amplitude, frequency, "steady")
+                history = solve(bounded, contact, motion, tolerance=tolerance)
+            found = audit(contact, history, tolerance)
+            refuse_unsteady(warned)
+            refuse_gain(found.energies, drive, amplitude, tolerance)
+        except DivergedError as error:
+            audits[place] = None
+            doubts.append((place, AccuracyWarning(f"a tap has no result: {error}")))
+            raise
+        audits[place] = found
+        doubts.extend((place, warning) for warning in (*warned, *found.problems))
+        values = observe_taps(contact, motion, history)
+        return np.array([values[name] for name in OBSERVABLES])
 
     taps = TapMap(
-        tap, drive.excess, ratios.min() * free_amplitude, ratios.max() * free_amplitude,
+        tap, drive, ratios.min() * free_amplitude, ratios.max() * free_amplitude,
         contact.reach, tolerance,
     )  # fmt: skip
     with make_reporter(settings.progress) as report:
@@ -145,7 +162,10 @@ def _simulate(inputs: Inputs, settings: Settings) -> Outcome:
             if report is not None:
                 report(1 - np.exp(-done / 80), f"{done} taps")
     curve = AmplitudeCurve(taps, drive)
-    found = curve.at_amplitudes(ratios * free_amplitude)
+    found, grazing = solve_amplitudes(
+        curve, ratios * free_amplitude,
+        partial(tap, tolerance=max(_PRECISE * tolerance, 1e-5)), contact.reach, tolerance,
+    )  # fmt: skip
     heights = found.amplitude + found.approach
     if heights.size:
         heights = np.linspace(heights.max(), heights.min(), _HEIGHTS)
@@ -153,9 +173,12 @@ def _simulate(inputs: Inputs, settings: Settings) -> Outcome:
     found = found._replace(
         approach=confirmed.approach, phase=drive.phase(found.amplitude, *confirmed.observables[:2])
     )
+    decisive = _find_decisive(taps, found, audits)
+    doubts = [each for each in doubts if each[0] in decisive]
     warned = [
-        *gather(doubts, taps.taps + confirmed.taps, "taps", _describe_place),
-        *_collect_warnings(drive, found, confirmed),
+        *gather(doubts, len(decisive), "decisive taps", _describe_place),
+        *gather(grazing, ratios.size, "amplitudes", _describe_place),
+        *_collect_warnings(drive, taps, found, confirmed),
     ]
     for warning in warned:
         warn_caller(warning)
@@ -173,9 +196,30 @@ def _simulate(inputs: Inputs, settings: Settings) -> Outcome:
         for name, row in zip(names, swept, strict=True):
             data[f"{direction}_{name}"] = ("sweep_height", row)
     return Outcome(
-        parts, solver, tolerance, data, coordinates, tuple(warned), {"taps": taps.taps},
-        write_audits(audits),
+        parts, solver, tolerance, data, coordinates, tuple(warned), {"taps": len(audits)},
+        write_audits([each for place in decisive if (each := audits.get(place)) is not None]),
     )  # fmt: skip
+
+
+def _bound_steps(solver: Solver, tolerance: float) -> Solver:
+    """Return a solver that gives up on taps that take far more steps than others."""
+    if not isinstance(solver, Energy):
+        return solver
+    most = int(_MOST_STEPS * (1e-2 / tolerance) ** 0.5)
+    return replace(solver, most_steps=min(solver.most_steps, most))
+
+
+def _find_decisive(
+    taps: TapMap, found: Solutions, tapped: Iterable[tuple[float, float]]
+) -> set[tuple[float, float]]:
+    """Return amplitudes and closest approaches of the taps that solutions rest on.
+
+    These are the taps next to them on the map and those that confirm them; all if there is none.
+    """
+    mapped = {(line.amplitude, each) for line in taps.lines for each in line.tried}
+    places = zip(found.amplitude.tolist(), found.approach.tolist(), strict=True)
+    near = {each for place in places for each in taps.find_support(*place)}
+    return near | (set(tapped) - mapped) if near else mapped
 
 
 def _describe_place(tap: tuple[float, float]) -> str:
@@ -185,9 +229,18 @@ def _describe_place(tap: tuple[float, float]) -> str:
 
 
 def _collect_warnings(
-    drive: Drive, found: Solutions, confirmed: Confirmed
+    drive: Drive, taps: TapMap, found: Solutions, confirmed: Confirmed
 ) -> Iterator[AccuracyWarning]:
     """Yield warnings of solutions that are missing, too many, or do not hold when they are run."""
+    cut = [line for line in taps.lines if line.cut]
+    if cut:
+        highest = max(cut, key=lambda line: line.nearest)
+        yield AccuracyWarning(
+            f"{len(cut)} of {len(taps.lines)} amplitudes have no taps below a height, the first of "
+            f"{write_quantity(highest.amplitude, 'm')} below "
+            f"{write_quantity(highest.amplitude + highest.nearest, 'm')}, where the drive could go "
+            f"on: solutions may be missing; {next(iter(highest.failures.values()))}"
+        )
     if found.amplitude.size == 0:
         yield AccuracyWarning("no height goes with any of the amplitudes: there is nothing to plot")
         return

@@ -12,16 +12,18 @@ from typing import NamedTuple
 import numpy as np
 
 from softafm.checks.gathering import Placed
-from softafm.errors import AccuracyWarning
+from softafm.errors import AccuracyWarning, DivergedError
 from softafm.instrument.oscillator import Drive
-from softafm.modes.amplitude_curve import Solutions
+from softafm.modes.amplitude_curve import AmplitudeCurve, Solutions
 from softafm.modes.tap_map import OBSERVABLES, TapMap
 
-_FIRST, _MOST_TAPS = 8, 5
-_CLOSE, _FAR = 0.2, 2.0
-"""Tolerances that the excess may be off where slopes give the rest, and where a solution holds."""
-_NEAR, _STEP = 0.1, 1e-2
-"""Units that a height may be off, and over which slopes are taken."""
+_FIRST, _MOST_TAPS = 16, 5
+_CLOSE, _FAR, _GRAZING, _MEET = 0.2, 1.0, 1.5, 5e-3
+"""Tolerances that the excess may be off where slopes give the rest, where a solution holds, and
+where a tap decides whether two solutions meet, and where it cannot tell either."""
+_NEAR, _STEP, _FARTHEST, _ASIDE = 0.1, 1e-2, 0.1, 0.25
+"""Units that a height may be off, and over which slopes are taken; part of the depth by which one
+moves at most, at least a unit; units between taps where two solutions may meet."""
 _LOSS, _FAINT = 2.0, 4e-4
 """Tolerances that a dissipation may be off, relative to itself or to this share of the largest
 force times the amplitude."""
@@ -32,13 +34,12 @@ Tap = Callable[[float, float], np.ndarray]
 class Confirmed(NamedTuple):
     """Closest approaches, m, (n,) and observables (7, n) of solutions.
 
-    ``solutions`` of them were run, in ``taps``; ``wrong`` are warnings of those that do not hold.
+    ``solutions`` of them were run; ``wrong`` are warnings of those that do not hold.
     """
 
     approach: np.ndarray
     observables: np.ndarray
     solutions: int
-    taps: int
     wrong: list[Placed]
 
 
@@ -58,20 +59,57 @@ def confirm_solutions(
     order = np.lexsort((found.row, np.array(found.branch)))
     missed: dict[int, bool] = {}
     wrong: list[Placed] = []
-    count = 0
     pending = set(np.linspace(0, order.size - 1, min(order.size, _FIRST)).astype(int).tolist())
     while pending:
         for position in sorted(pending):
             i = order[position]
             place = amplitude, _ = float(found.amplitude[i]), float(approach[i])
-            tapped = [*_seek(place, observables[:, i], taps, tap, drive, tolerance)]
+            tapped: list[_Tapped] = []
+            missed[position] = True
+            try:
+                for each in _seek(place, observables[:, i], taps, tap, drive, tolerance):
+                    tapped.append(each)
+                missed[position] = len(tapped) > 1
+            except DivergedError:  # of which the tap warns
+                if not tapped:
+                    continue
             approach[i], observables[:, i], doubt = _settle(amplitude, tapped, taps, tolerance)
             wrong += [(place, doubt)] if doubt is not None else []
-            count += len(tapped)
-            missed[position] = len(tapped) > 1
         near = (pair for pair in pairwise(sorted(missed)) if missed[pair[0]] or missed[pair[1]])
         pending = {(low + high) // 2 for low, high in near} - set(missed)
-    return Confirmed(approach, observables, len(missed), count, wrong)
+    return Confirmed(approach, observables, len(missed), wrong)
+
+
+def solve_amplitudes(
+    curve: AmplitudeCurve, amplitudes: np.ndarray, precise_tap: Tap, unit: float, tolerance: float
+) -> tuple[Solutions, list[Placed]]:
+    """Return the solutions of amplitudes, m, on a map, and warnings of those that may be amiss.
+
+    Where two of them nearly meet, or have just parted, three precise taps decide, by a parabola.
+    """
+    corrections: list[tuple[int, float, float]] = []
+    doubts: list[Placed] = []
+    for row, place in curve.find_grazing(amplitudes, _GRAZING * tolerance):
+        amplitude = float(amplitudes[row])
+        approaches = place + unit * np.array([-_ASIDE, 0.0, _ASIDE])
+        try:
+            taps = [precise_tap(amplitude, each) for each in approaches.tolist()]
+        except DivergedError:  # of which the tap warns
+            continue
+        excesses = [curve.drive.excess(amplitude, *values[:2]) for values in taps]
+        bend, slope, middle = np.polyfit([-1, 0, 1], excesses, 2)
+        turn = float(np.clip(-slope / (2 * bend), -1, 1)) if bend else 0.0
+        found = float(np.polyval([bend, slope, middle], turn))
+        approach = place + turn * _ASIDE * unit
+        corrections.append((row, approach, found - float(curve.excess(amplitude, approach))))
+        if abs(found) < _MEET * tolerance:
+            text = (
+                "two solutions meet, and may be missing or too many: there the drive differs by "
+                f"{abs(found):.2g} of itself from what is needed; take another amplitude_ratio or "
+                "a lower tolerance"
+            )
+            doubts.append(((amplitude, approach), AccuracyWarning(text, -abs(found))))
+    return curve.at_amplitudes(amplitudes, corrections), doubts
 
 
 def _seek(
@@ -99,7 +137,8 @@ def _seek(
         if abs(here.excess) <= _CLOSE * tolerance and holds:
             return
         last = here
-        approach = here.approach - float(np.clip(here.excess / slope, -taps.unit, taps.unit))
+        farthest = max(taps.unit, _FARTHEST * abs(approach))
+        approach = here.approach - float(np.clip(here.excess / slope, -farthest, farthest))
 
 
 def _miss(tapped: _Tapped, expected: np.ndarray, amplitude: float, tolerance: float) -> bool:
@@ -125,7 +164,8 @@ def _settle(
         far, near = (taps.observables(amplitude, best.approach + s) for s in (step, -step))
         slopes, slope = (far - near) / (2 * step), taps.excess_slope(amplitude, best.approach)
     off = -best.excess / slope if slope else np.inf
-    if abs(off) > _NEAR * taps.unit:
+    found = abs(best.excess) <= _FAR * tolerance or others == []
+    if abs(off) > _NEAR * taps.unit or not found:
         if abs(best.excess) <= _FAR * tolerance:
             return best.approach, best.values, None
         text = (

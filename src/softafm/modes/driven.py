@@ -1,5 +1,6 @@
 """A driven lever: what drives it, which amplitudes it is asked for, and when it is no sine."""
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import Any
 
@@ -8,14 +9,18 @@ from numpy.typing import ArrayLike
 
 from softafm.checks.validate import check_finite, check_positive, refuse_masked
 from softafm.contact import Contact
-from softafm.errors import AccuracyWarning
+from softafm.errors import AccuracyWarning, DivergedError
 from softafm.instrument.cantilever import Cantilever
 from softafm.instrument.motions import Sine
 from softafm.instrument.oscillator import Drive
+from softafm.solvers.energies import Energies
 from softafm.units.quantities import write_quantity
 
 _SINE = 0.02
 """Second harmonic over the first up to which the tip moves as a sine."""
+_UNSTEADY, _UNBALANCED = 1.0, 10.0
+"""Gaps of largest tension that a cycle may be off from the next, and tolerances that its work may
+be amiss, over that of the drive, in a tap that counts."""
 
 
 @dataclass(frozen=True)
@@ -77,6 +82,21 @@ def estimate_deepest_tap(
     deepest = depth.argmax()
     amplitude = float(amplitudes[deepest])
     return Sine(amplitude - float(depth[deepest]), amplitude, frequency, "steady")
+
+
+def refuse_unsteady(warned: Iterable[AccuracyWarning]) -> None:
+    """Raise DivergedError for a tap of which a solver warned that no cycle repeats another."""
+    for warning in warned:
+        if str(warning).startswith("no steady cycle") and warning.severity > _UNSTEADY:
+            raise DivergedError(str(warning))
+
+
+def refuse_gain(energies: Energies, drive: Drive, amplitude: float, tolerance: float) -> None:
+    """Raise DivergedError for a tap whose work is amiss by what the drive would notice."""
+    off = abs(energies.imbalance) / (np.pi * amplitude * drive.force)
+    if off > _UNBALANCED * tolerance:
+        lost = write_quantity(energies.imbalance, "J")
+        raise DivergedError(f"energy is not balanced: {lost} of work went nowhere")
 
 
 def doubt_sine(

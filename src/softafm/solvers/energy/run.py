@@ -203,8 +203,15 @@ class Run:
             misses.append(self.unsteady)
             caught = surface.clock["edge"] > 0 and self.records[0]["edge"] == 0
             forces, before = _sum_up(self.records[: self.count]), forces
-            steady = self.unsteady <= self.steadiness
-            steady &= self.unsteady < SURELY_STEADY or _are_near(forces, before, self.strictness)
+            steady = (
+                self.unsteady <= self.steadiness
+                and (
+                    self.unsteady < SURELY_STEADY
+                    or _are_near(forces, before, self.strictness)
+                    # What still changes after some such cycles are their errors.
+                    or (self.cycle > 2 and max(misses[-3:]) <= self.steadiness)
+                )
+            )
             if not caught and (steady or _stagnates(misses)):
                 self.unsteady = max(self.unsteady, 0.0 if dent.rules else _scatter(misses))
                 return
