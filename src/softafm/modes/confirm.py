@@ -164,7 +164,8 @@ def _settle(
         far, near = (taps.observables(amplitude, best.approach + s) for s in (step, -step))
         slopes, slope = (far - near) / (2 * step), taps.excess_slope(amplitude, best.approach)
     off = -best.excess / slope if slope else np.inf
-    found = abs(best.excess) <= _FAR * tolerance or others == []
+    crossed = len({each.excess > 0 for each in tapped}) > 1
+    found = crossed or not others or abs(best.excess) <= _FAR * tolerance
     if abs(off) > _NEAR * taps.unit or not found:
         if abs(best.excess) <= _FAR * tolerance:
             return best.approach, best.values, None
