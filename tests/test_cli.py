@@ -298,13 +298,13 @@ def test_info_on_an_approach_curve(softafm, folder):
     assert re.search(r"largest dissipation +11\.56 aJ", out)  # π k A0² / 4Q
     assert re.search(r"time of the tap +3\.597 µs", out)
     assert re.search(r"creep time +100 ns +0\.028 of the tap: viscoelastic", out)
-    assert re.search(r"expected cost +under 1 s +some 130 taps; the edge crosses", out)
+    assert re.search(r"expected cost +under 1 s +some 80 taps; the edge crosses", out)
     fixed = ("--set", "solver={name='attard', steps=100000}")
     off = ("--set", "motion.drive_frequency=280kHz")
     code, out, _ = softafm("info", "ps-approach-curve.toml", *fixed, *off)
     assert code == 0
     assert re.search(r"driven at 1\.007 of the resonance", out)
-    assert re.search(r"expected cost +minutes +some 130 taps; 100000 steps of 70 nodes", out)
+    assert re.search(r"expected cost +minutes +some 80 taps; 100000 steps of 70 nodes", out)
 
 
 @pytest.mark.parametrize(

@@ -2,6 +2,7 @@
 
 import math
 import warnings
+from contextlib import suppress
 
 import pytest
 
@@ -63,7 +64,8 @@ def test_a_run_says_it_once():
     contact = sa.Contact(sa.Paraboloid(10e-9), soft, sa.LennardJones(1e-19, 0.3e-9))
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always")
-        sa.approach_curve(contact, lever, 0.02, [0.9, 0.8], tolerance=0.1)
+        with suppress(sa.DivergedError):  # no tap of such a lever comes to an end
+            sa.approach_curve(contact, lever, 0.02, [0.9, 0.8], tolerance=0.1)
     doubts = [each for each in caught if each.category is DoubtfulValueWarning]
     assert [str(each.message).partition(":")[0] for each in doubts] == ["free_amplitude = 0.02 m"]
 

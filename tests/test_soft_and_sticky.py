@@ -81,3 +81,19 @@ def test_a_soft_viscoelastic_contact_parts_as_slow_steps_have_it():
     assert lost == pytest.approx(work, rel=1e-2)
     assert history.jump_energy.size == 2
     assert history.diagnostics["attempted_steps"] < 2000
+
+
+def test_a_tip_is_pressed_through_a_double_layer_with_a_faint_outer_minimum():
+    """Its attraction is nothing to the sample, and what presses this acts a tenth as far out."""
+    law = sa.DLVO(1.148e-21, 3.64e-10, 0.0438, 1.4217e-9)
+    contact = sa.Contact(sa.Paraboloid(1e-7), sa.Elastic(1.6e9, 0.34), law)
+    pressed = sa.force_distance(contact, sa.Triangle(60e-9, -2e-9, 1e-6))
+    finer = sa.force_distance(contact, sa.Triangle(60e-9, -2e-9, 1e-6), tolerance=1e-3)
+    assert float(pressed.force_max) == pytest.approx(float(finer.force_max), rel=1e-3)
+    # Before it is pressed the sample hardly gives way: Derjaguin's force on a rigid one.
+    for gap in (2e-9, 4e-9):
+        near = sa.force_distance(contact, sa.Triangle(60e-9, gap, 1e-6))
+        rigid = 2 * np.pi * 1e-7 * float(law.potential(gap))
+        assert float(near.force_max) == pytest.approx(rigid, rel=3e-3)
+    lowest = 2 * np.pi * 1e-7 * float(law.potential(law.equilibrium_gap))
+    assert float(pressed.force_min) == pytest.approx(lowest, rel=2e-3)

@@ -323,6 +323,18 @@ def test_of_two_wells_the_deeper_tension_is_the_contact():
     assert barred.equilibrium_gap > 5 * Z0
 
 
+def test_the_width_of_a_well_does_not_count_the_barrier_outside():
+    law = sa.DLVO(2e-20, 0.3e-9, 0.04, 2e-9)
+    gaps = np.linspace(law.equilibrium_gap, 5e-9, 200_001)
+    tension = np.fmax(-law.pressure(gaps), 0.0)
+    work = float(tension.sum() * (gaps[1] - gaps[0]))
+    assert work > 1.05 * law.work_of_adhesion
+    width = 16 / (9 * np.sqrt(3)) * work / law.largest_tension
+    assert law.width_of_well == pytest.approx(width, rel=1e-3)
+    smooth = sa.Morse(0.05, 0.3e-9, 0.1e-9)
+    assert smooth.width_of_well == pytest.approx(smooth.range)
+
+
 def test_a_barrier_that_outweighs_the_well_leaves_no_adhesion():
     law = surfaces.DLVO.from_concentration(5e-21, Z0, 0.05, 0.1)
     assert law.attracts

@@ -27,7 +27,7 @@ _STEEP, _LARGEST_OF_STEEP = 0.05, 20.0
 """Width over which a tip rises from one to two ranges of the attraction, in radii of the open
 contact, below which its edge stays there (paraboloids have 0.4, cones 0.9, punches 0), and the
 Tabor number up to which the solver can follow such a contact."""
-_SOFT = 1e-4
+_SOFT, _FAINT = 1e-4, 1e-6
 """Share of the modulus to which the repulsion of a law without attraction falls at the edge."""
 _MOST_STRETCHES, _SAME = 60, 1e-9
 _MOST_DOUBLINGS = 200
@@ -97,12 +97,22 @@ class Contact:
         return self.surface.attracts and self.surface.work_of_adhesion > 0
 
     @cached_property
+    def pulled(self) -> bool:
+        """Whether there is an attraction that the sample feels.
+
+        It does not in the faint outer minimum of a double layer, far from where it is pressed.
+        """
+        law = self.surface
+        return law.attracts and law.largest_tension > _FAINT * self.softened_modulus
+
+    @cached_property
     def edge_gap(self) -> float:
         """Gap at the edge of the contact, m: that of largest tension.
 
-        Without attraction that at which the repulsion has fallen to 1e-4 of the softened modulus.
+        Without attraction, or a faint one, that at which the repulsion has fallen to 1e-4 of the
+        softened modulus.
         """
-        if self.surface.attracts:
+        if self.pulled:
             return self.surface.gap_of_largest_tension
         low, high, least = 1e-12, 1e-6, _SOFT * self.softened_modulus
         for _ in range(60):
@@ -125,11 +135,9 @@ class Contact:
 
         The range of the attraction, or of a law that only repels the length in which it decays.
         """
-        if self.adhesive:
-            return self.surface.range
         gap = self.edge_gap
-        if self.surface.attracts:
-            return gap
+        if self.pulled:
+            return self.surface.width_of_well if self.adhesive else gap
         return -float(self.surface.pressure(gap) / self.surface.slope(gap))
 
     @cached_property

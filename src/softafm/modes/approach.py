@@ -205,7 +205,7 @@ def _bound_steps(solver: Solver, tolerance: float) -> Solver:
     """Return a solver that gives up on taps that take far more steps than others."""
     if not isinstance(solver, Energy):
         return solver
-    most = int(_MOST_STEPS * (1e-2 / tolerance) ** 0.5)
+    most = int(_MOST_STEPS * max(1e-2 / tolerance, 1.0) ** 0.5)
     return replace(solver, most_steps=min(solver.most_steps, most))
 
 

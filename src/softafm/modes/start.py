@@ -88,7 +88,7 @@ def refuse_start_inside(contact: Contact, motion: Motion) -> None:
         return
     start = float(motion.height(motion.breaks[0]))
     gap, name = contact.edge_gap, "gap at which the surfaces touch"
-    if contact.surface.attracts:
+    if contact.pulled:
         gap, name = contact.surface.equilibrium_gap, "equilibrium gap"
     if start <= gap:
         raise ValueError(

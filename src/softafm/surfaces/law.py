@@ -116,6 +116,20 @@ class SurfaceLaw(ABC):
         return 16 / (9 * sqrt(3)) * self.work_of_adhesion / tension
 
     @cached_property
+    def width_of_well(self) -> float:
+        """Distance over which the tension of the well acts, m, whatever barrier lies outside.
+
+        As ``range``, with the work from the equilibrium gap to where the attraction ends: the same
+        where no barrier does.
+        """
+        outside = np.flatnonzero((self.gap_of_largest_tension < _GAPS) & (self._scanned > 0))
+        work = -float(self.potential(self.equilibrium_gap))
+        if outside.size:
+            end = _find_root(self.pressure, _GAPS[outside[0] - 1], _GAPS[outside[0]])
+            work += float(self.potential(end))
+        return 16 / (9 * sqrt(3)) * work / self.largest_tension
+
+    @cached_property
     def sharpness(self) -> float:
         """How steeply the tension ends, in units of a Lennard-Jones law of the same range."""
         beyond = self.gap_of_largest_tension + self.range * _OUTWARDS

@@ -83,6 +83,11 @@ class LennardJones(SurfaceLaw):
         """The equilibrium gap z0, m."""
         return self.z0
 
+    @property
+    def width_of_well(self) -> float:
+        """The same: there is no barrier."""
+        return self.z0
+
     def stretched(self, factor: float) -> "LennardJones":
         """Return the law with all its lengths times ``factor``, of the same work of adhesion."""
         factor = check_positive("factor", factor, "")

@@ -119,7 +119,7 @@ class Surface:
         # What a steady cycle gathers is filtered at fixed radii, and a trace knows one stiffness.
         traced = tabor > SLACKER and not is_steady(motion) and isinf(contact.body.length)
         self.trace_from = TRACE_FROM if traced else inf
-        if slack and not traced:
+        if slack and find_softening(self.parameters, period) < HARDLY_SOFTER:
             self.growth = min(self.growth, GROWTH_IF_SLACK * min(1.0, strictness**0.17))
         self.too_slow = TOO_SLOW[1 if is_steady(motion) else 0] * period
         self.held = choose_spacing_held(self.parameters, duration)
@@ -446,7 +446,7 @@ def find_gap_origin(contact: Any) -> float:
     counted from farther in if they only there resist as much as the sample can.
     """
     law, edge = contact.surface, contact.edge_gap
-    if law.attracts:
+    if contact.pulled:
         gap = law.equilibrium_gap
         origin = gap + 9 * sqrt(3) * law.largest_tension / float(law.slope(gap))
     else:

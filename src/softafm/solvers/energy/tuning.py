@@ -159,8 +159,8 @@ GROWTH_IF_FAR_SOFTER = 0.2
 3 %."""
 
 GROWTH_IF_SLACK = 0.22
-"""The same where an edge rides, but no memory with it: the largest force of sticky taps, a fifth of
-the pull-off, was 4 % off."""
+"""The same where an edge rides and nothing creeps: the largest force of sticky taps, a fifth of the
+pull-off, was 4 % off."""
 
 APEX, FINEST_GROWTH = 2.5, 0.6
 """Radius of a round apex, in that of the contact, times the first is the part of that growth that
