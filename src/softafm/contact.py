@@ -27,8 +27,11 @@ _STEEP, _LARGEST_OF_STEEP = 0.05, 20.0
 """Width over which a tip rises from one to two ranges of the attraction, in radii of the open
 contact, below which its edge stays there (paraboloids have 0.4, cones 0.9, punches 0), and the
 Tabor number up to which the solver can follow such a contact."""
-_SOFT, _FAINT = 1e-4, 1e-6
+_SOFT = 1e-4
 """Share of the modulus to which the repulsion of a law without attraction falls at the edge."""
+_FAINT, _DIAMOND = 1e-6, 1e12
+"""Share of the modulus up to which an attraction is not felt, and the largest modulus that counts
+there, Pa: a sample said to be rigid feels none."""
 _MOST_STRETCHES, _SAME = 60, 1e-9
 _MOST_DOUBLINGS = 200
 
@@ -103,7 +106,8 @@ class Contact:
         It does not in the faint outer minimum of a double layer, far from where it is pressed.
         """
         law = self.surface
-        return law.attracts and law.largest_tension > _FAINT * self.softened_modulus
+        hardness = min(self.softened_modulus, _DIAMOND)
+        return law.attracts and law.largest_tension > _FAINT * hardness
 
     @cached_property
     def edge_gap(self) -> float:

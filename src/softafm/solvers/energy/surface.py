@@ -53,6 +53,7 @@ from softafm.solvers.energy.tuning import (
     SLACK,
     SLACKER,
     SPACING,
+    SPACING_IF_FAR_SOFTER,
     TOO_SLOW,
     TRACE_FROM,
 )
@@ -110,6 +111,7 @@ class Surface:
         if find_softening(self.parameters, duration) > FAR_SOFTER:
             # No elastic answer evens out what the nodes do not resolve.
             self.growth = min(self.growth, GROWTH_IF_FAR_SOFTER)
+            self.target *= SPACING_IF_FAR_SOFTER
         # Where the tip rises steeply, at the rim of a punch, it holds the edge; and a sample that
         # is all memory parts evenly, without an edge.
         free = not contact.steep and find_softening(self.parameters, period) < FAR_SOFTER

@@ -154,9 +154,9 @@ GROWTH = 0.3
 """Logarithmic growth of the spacing a node away from the edge (``softafm docs performance``, "What
 did not help": 0.45 slips in slack contacts)."""
 
-GROWTH_IF_FAR_SOFTER = 0.2
-"""The same where a sample is all memory: the pull-off of a slow tap was 1.2 % off, that of a punch
-3 %."""
+GROWTH_IF_FAR_SOFTER, SPACING_IF_FAR_SOFTER = 0.2, 0.5
+"""The same where a sample is all memory, and the part of the spacing at the edge: the pull-off of a
+slow tap was 1.2 % off, that of a punch 3 %; ramps take fewer steps, as the edge catches on none."""
 
 GROWTH_IF_SLACK = 0.22
 """The same where an edge rides and nothing creeps: the largest force of sticky taps, a fifth of the
