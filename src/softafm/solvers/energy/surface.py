@@ -411,14 +411,15 @@ class Surface:
 def find_fineness(contact: Any, motion: Motion) -> float:
     """Return by how much less nodes may grow apart for the apex of a tip to be resolved.
 
-    The apex, round up to where its parabola would be as steep as the tip is at the contact edge, is
-    seen by the nodes at the axis.
+    The nodes at the axis see the apex. In the radius of the contact, its own is half the height at
+    the edge in that of the paraboloid that the apex begins as.
     """
-    widest = contact.contact_radius(find_lowest_height(motion))
-    if widest == 0:
+    height = contact.reach - find_lowest_height(motion)
+    if height <= 0:
         return 1.0
-    apex = contact.effective_radius * float(contact.tip.slope(widest))
-    return float(np.clip(APEX * apex / widest, FINEST_GROWTH, 1.0))
+    radius = contact.tip.radius_at(height)
+    apex = contact.effective_radius * height / radius**2
+    return float(min(max(APEX * apex, FINEST_GROWTH), 1.0))
 
 
 def find_softening(parameters: Parameters, duration: float) -> float:
