@@ -119,7 +119,7 @@ class Dent:
         return miss - self._gained[:, None] * (answer @ v)
 
     def _answer(self, records: np.ndarray, shapes: "list[Shape]") -> np.ndarray:
-        """Return A = ⟨(1 + J K D)⁻¹ K D⟩ of a cycle, 1/m·Pa·m, shape (nodes, nodes)."""
+        """Return A = ⟨(1 + J K D)⁻¹ K D⟩ of a cycle, Pa, shape (nodes, nodes)."""
         mesh, frame = self._surface.archive
         stiffness = self._find_stiffness()
         law, radius = self._surface.contact.surface, frame * mesh.nodes
@@ -141,6 +141,7 @@ class Dent:
         return answer
 
     def _find_stiffness(self) -> np.ndarray:
+        """Return S of the body on the mesh that the memory is kept on, shape (nodes, nodes)."""
         mesh, frame = self._surface.archive
         body = self._surface.contact.body
         uniform = Stiffness(body, mesh).uniform
