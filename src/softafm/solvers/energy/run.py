@@ -123,6 +123,8 @@ class Run:
     def steps(self) -> Iterator[float]:
         """Run, yielding the fraction of the motion done at every return of the compiled loop."""
         surface = self.surface
+        if self.returns.size and not is_steady(self.motion):
+            surface.begin_archive(float(self.motion.height(self._lowest_time())), self.strictness)
         self._settle()
         if surface.clock["edge"] > 0 and self.cycle == 1:
             self._fall_at_start()
@@ -161,6 +163,8 @@ class Run:
                 if outcome == TRIGGERED:
                     self._turn()
                 yield (surface.time - first) / (self.breaks[-1] - first)
+            if stop in self.returns and surface.clock["edge"] == 0:
+                surface.put_aside()
         self.stored = stored, self._find_stored()
 
     def cycles(self) -> Iterator[float]:
@@ -221,6 +225,9 @@ class Run:
         """Take a motion for what is to be done, and the instants that a step of it has to meet."""
         self.motion, self.breaks = motion, motion.breaks
         self.stops = np.sort(np.concatenate([motion.breaks, motion.landmarks]))
+        heights = motion.height(self.stops)
+        tops = np.flatnonzero((heights[1:-1] > heights[:-2]) & (heights[1:-1] >= heights[2:])) + 1
+        self.returns = self.stops[tops[heights[tops] > self.contact.reach]]
 
     def _lowest_time(self) -> float:
         """Return when the motion is lowest, s."""

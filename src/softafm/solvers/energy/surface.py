@@ -34,6 +34,8 @@ from softafm.solvers.energy.memory import recall
 from softafm.solvers.energy.stiffness import find_stiffness
 from softafm.solvers.energy.tuning import (
     APEX,
+    ARCHIVE_GROWTH,
+    ARCHIVE_SPACING,
     AT_ONCE,
     CLOSEST,
     COARSER_THAN_NEEDED,
@@ -251,6 +253,25 @@ class Surface:
         self.level, self.mesh, self.stiffness, self.table = grid
         for name in clock.dtype.names:
             self.clock[name] = clock[name]
+
+    def begin_archive(self, lowest: float, strictness: float) -> None:
+        """Gather memory on a mesh of its own, too, about the contact at the ``lowest`` height, m.
+
+        There ``put_aside`` finds it as sharp as it was when the edge was there.
+        """
+        finer = min(1.0, strictness**0.2)
+        mesh = unit_mesh(ARCHIVE_SPACING * finer, ARCHIVE_GROWTH * finer, EXTENT)
+        self.archive = mesh, max(self.contact.contact_radius(lowest), self.open_frame)
+        self.remember(np.zeros((len(self.lag_energy), mesh.nodes.size)))
+
+    def put_aside(self) -> None:
+        """Take the memory gathered so far for one from before now, which only fades."""
+        old = self.background
+        elements = len(old.values)
+        fading = np.exp(-(self.time - old.since) / self.parameters.retardation)
+        self.remember(fading[:, None] * old.values + old.gained[2 : 2 + elements])
+        self.background.gained[:2] = old.gained[:2]
+        self.fields[MEMORY:] = 0
 
     def rewind(self, time: float) -> np.ndarray:
         """Go back to ``time``; return the memory gained since, (elements, n) in Pa·m.
