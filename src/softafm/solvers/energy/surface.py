@@ -234,7 +234,8 @@ class Surface:
         self.lay(mesh)
 
     def open(self) -> None:
-        """Let the surface be as its memory has it, in the frame of a contact yet to come."""
+        """Let go of the surface: it is as its memory has it, in the frame of a contact to come."""
+        self._bear(np.zeros_like(self.fields[LOAD]))  # while the mesh still covers the contact
         self.level = self.first_level
         mesh, stretch = self.build_mesh(self.level), self.open_frame / self.clock["frame"]
         self.fields = self._carry(self.fields, mesh, stretch)
@@ -368,9 +369,7 @@ class Surface:
         elements = self.parameters.compliance[1:]
         self.fields[DEFORMATION] = u
         load = (v - u) / self.parameters.compliance[0]
-        strained = mesh.stiffness @ (frame * (load - self.fields[LOAD]))
-        self.lag_energy += (0.5 * (load + self.fields[LOAD]) - memory) @ strained
-        self.fields[LOAD] = load
+        self._bear(load)
         if len(self.background.values):
             mesh_there, frame_there = self.archive
             there = self._carry(self.fields[LOAD : LOAD + 1], mesh_there, frame_there / frame)
@@ -392,6 +391,13 @@ class Surface:
         coarseness = spacing / max(zone, 1e-9 * frame) if edge else 0.0
         height = h0 + clock["deflection"]
         return self.time, height, force, edge, u[0], loss, 0.0, coarseness, frame, 0.0
+
+    def _bear(self, load: np.ndarray) -> None:
+        """Take a load q, Pa·m, at once: the lags q − y_m change by as much."""
+        change, mean = load - self.fields[LOAD], 0.5 * (load + self.fields[LOAD])
+        strained = self.clock["frame"] * (self.mesh.stiffness @ change)
+        self.lag_energy += (mean - self.memory()) @ strained
+        self.fields[LOAD] = load
 
     def energy(self) -> float:
         """Energy of the contact as an instantaneous elastic one, to infinity, and the lever, J."""
