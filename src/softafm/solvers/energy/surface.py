@@ -235,6 +235,7 @@ class Surface:
 
     def open(self) -> None:
         """Let go of the surface: it is as its memory has it, in the frame of a contact to come."""
+        self.fields = self.fields.copy()  # which may be kept
         self._bear(np.zeros_like(self.fields[LOAD]))  # while the mesh still covers the contact
         self.level = self.first_level
         mesh, stretch = self.build_mesh(self.level), self.open_frame / self.clock["frame"]
