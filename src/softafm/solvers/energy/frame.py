@@ -179,5 +179,5 @@ def follow_edge(step, clock, mesh, controls):
         return frame
     pace = min(1.0, abs(ahead) / (controls.slack * node))
     ridden = frame + choose_frame(edge + ahead, controls.open_frame) - suited
-    covering = min(controls.cover * clock.widest, frame)
+    covering = min(max(controls.cover * clock.widest, controls.least_frame), frame)
     return max(ridden + pace * (suited - frame), SMALLEST_FRAME * frame, covering)

@@ -162,7 +162,7 @@ class Controls(NamedTuple):
     to the largest attraction so far.
     ``slack`` is how far the edge moves, in edge spacings, while the frame catches up with it; the
     frame stays behind an edge where it is that its nodes lie closer than ``held`` times the zone.
-    Nor does it close to less than ``cover`` of the widest edge so far.
+    Nor does it close to less than ``cover`` of the widest edge so far, or below ``least_frame``, m.
     Remeshing is asked for when the coarseness of a record leaves ``finest`` to ``coarsest``.
     The step in which the force reaches ``trigger``, N, is the last. A contact whose edge is beyond
     ``ride_from``, m, is solved together with its edge.
@@ -182,6 +182,7 @@ class Controls(NamedTuple):
     slack: float
     held: float
     cover: float
+    least_frame: float
     finest: float
     coarsest: float
     most_tries: float

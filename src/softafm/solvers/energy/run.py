@@ -99,6 +99,7 @@ class Run:
             slack=LAG,
             held=0.0,
             cover=0.0 if contact.adhesive else COVER,
+            least_frame=self.surface.open_frame if self.surface.rimmed else 0.0,
             finest=0.0,
             coarsest=0.0,
             most_tries=float(solver.most_steps),

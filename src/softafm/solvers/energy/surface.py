@@ -48,6 +48,7 @@ from softafm.solvers.energy.tuning import (
     GROWTH,
     GROWTH_IF_FAR_SOFTER,
     GROWTH_IF_SLACK,
+    GROWTH_IF_STEEP,
     HARDLY_SOFTER,
     HELD,
     HELD_IF_FAR_SOFTER,
@@ -108,6 +109,10 @@ class Surface:
         sharpness = contact.surface.sharpness if contact.adhesive else 1.0
         self.target = SPACING * at_least**0.2 / max(1.0, sharpness)
         self.growth = GROWTH * min(1.0, strictness**0.17) * find_fineness(contact, motion)
+        # A stiff punch parts everywhere at once: the mesh stays at its rim, wherever the edge is.
+        self.rimmed = contact.steep and contact.tabor_softened < SLACK
+        if contact.steep and not self.rimmed:
+            self.growth = min(self.growth, GROWTH_IF_STEEP * min(1.0, strictness**0.17))
         period = float(breaks[-1] - breaks[0])
         duration = inf if is_steady(motion) else period
         if find_softening(self.parameters, duration) > FAR_SOFTER:
@@ -218,7 +223,8 @@ class Surface:
     @property
     def coarseness_allowed(self) -> tuple[float, float]:
         """Bounds of the coarseness within which the mesh is kept."""
-        finest = FINER_THAN_NEEDED * self.target if self.level > 0 else 0.0
+        coarsest_level = self.first_level if self.rimmed else 0
+        finest = FINER_THAN_NEEDED * self.target if self.level > coarsest_level else 0.0
         return (
             finest,
             COARSER_THAN_NEEDED * self.target if self.level < self.finest_level else np.inf,
@@ -229,6 +235,8 @@ class Surface:
         self.level = self.first_level
         if coarseness > 0:
             self.level = self.find_level(self.mesh.edge_spacing * self.target / coarseness)
+        if self.rimmed:
+            self.level = max(self.level, self.first_level)
         mesh = self.build_mesh(self.level)
         self.fields = self._carry(self.fields, mesh, 1.0)
         self.lay(mesh)

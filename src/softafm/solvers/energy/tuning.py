@@ -167,6 +167,10 @@ GROWTH_IF_SLACK = 0.22
 """The same where an edge rides and nothing creeps: the largest force of sticky taps, a fifth of the
 pull-off, was 4 % off."""
 
+GROWTH_IF_STEEP = 0.15
+"""The same for slack contacts of punches: the rim bends the profile, wherever the edge is. What a
+sample under one lost was 15 % off."""
+
 APEX, FINEST_GROWTH = 2.5, 0.6
 """Radius of a round apex, in that of the contact, times the first is the part of that growth that
 a tip sharper than a paraboloid gets, down to the second (the pull-off of a cone pressed to nine
