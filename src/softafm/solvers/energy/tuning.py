@@ -60,7 +60,7 @@ usual value, Nocedal and Wright, Numerical Optimization, 2006, section 3.1)."""
 
 # Memory.
 
-AT_ONCE = 1e-4
+AT_ONCE = 1e-5
 """Creep time, in times in which the edge crosses the reach of the surface forces, below which creep
 counts as instantaneous, at tolerances from 1e-2 on: its losses are that part of force times reach.
 At 3e-3 a slow curve on polyethylene jumped that does not (tests/test_spectroscopy.py)."""
