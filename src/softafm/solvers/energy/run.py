@@ -124,7 +124,7 @@ class Run:
     def steps(self) -> Iterator[float]:
         """Run, yielding the fraction of the motion done at every return of the compiled loop."""
         surface = self.surface
-        if self.returns.size and not is_steady(self.motion):
+        if (returns := self._find_returns()).size:
             surface.begin_archive(float(self.motion.height(self._lowest_time())), self.strictness)
         self._settle()
         if surface.clock["edge"] > 0 and self.cycle == 1:
@@ -164,7 +164,7 @@ class Run:
                 if outcome == TRIGGERED:
                     self._turn()
                 yield (surface.time - first) / (self.breaks[-1] - first)
-            if stop in self.returns and surface.clock["edge"] == 0:
+            if stop in returns and surface.clock["edge"] == 0:
                 surface.put_aside()
         self.stored = stored, self._find_stored()
 
@@ -226,13 +226,23 @@ class Run:
         """Take a motion for what is to be done, and the instants that a step of it has to meet."""
         self.motion, self.breaks = motion, motion.breaks
         self.stops = np.sort(np.concatenate([motion.breaks, motion.landmarks]))
-        heights = motion.height(self.stops)
-        tops = np.flatnonzero((heights[1:-1] > heights[:-2]) & (heights[1:-1] >= heights[2:])) + 1
-        self.returns = self.stops[tops[heights[tops] > self.contact.reach]]
 
     def _lowest_time(self) -> float:
         """Return when the motion is lowest, s."""
         return float(self.stops[np.argmin(self.motion.height(self.stops))])
+
+    def _find_returns(self) -> np.ndarray:
+        """Return the instants at which the tip, free of the sample, begins to come back, s.
+
+        None if that is no matter, or where memory rides with the edge: what is gathered on a mesh
+        of its own is filtered at fixed radii, too coarsely for such steps.
+        """
+        surface = self.surface
+        if is_steady(self.motion) or surface.trace_from < np.inf or not surface.lag_energy.size:
+            return np.empty(0)
+        heights = self.motion.height(self.stops)
+        tops = 1 + np.flatnonzero((heights[1:-1] > heights[:-2]) & (heights[1:-1] >= heights[2:]))
+        return self.stops[tops[heights[tops] > self.contact.reach]]
 
     def _next_stop(self) -> float | None:
         """Return the next instant that a step has to meet, s, or None at the end."""
