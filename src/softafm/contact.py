@@ -211,8 +211,10 @@ class Contact:
 
         Of a sample that flows no less than its modulus when flow sets in.
         """
-        left = 1 / float(self.body.compliance.at(duration))
-        return self._tabor(max(left, self.softened_modulus))
+        return self._tabor(self._modulus_after(duration))
+
+    def _modulus_after(self, duration: float) -> float:
+        return max(1 / float(self.body.compliance.at(duration)), self.softened_modulus)
 
     def regularised(self, tabor: float) -> "Contact":
         """Return the contact with a law of longer range, at the same work of adhesion.
@@ -314,6 +316,13 @@ class Contact:
         if self.contact_radius(tip_height) == 0:
             return 0.0  # a stiffer sample reaches no farther for the tip
         return self._find_contact_radius(tip_height, self._modulus_instantaneous)
+
+    def contact_radius_after(self, tip_height: float, duration: float) -> float:
+        """Radius of the contact at a tip height (m) where the sample has crept for a time, s, m.
+
+        As ``contact_radius``, with the modulus of ``tabor_after``.
+        """
+        return self._find_contact_radius(tip_height, self._modulus_after(duration))
 
     def _find_contact_radius(self, tip_height: float, modulus: float) -> float:
         depth = -tip_height

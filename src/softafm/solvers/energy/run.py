@@ -125,7 +125,8 @@ class Run:
         """Run, yielding the fraction of the motion done at every return of the compiled loop."""
         surface = self.surface
         if (returns := self._find_returns()).size:
-            surface.begin_archive(float(self.motion.height(self._lowest_time())), self.strictness)
+            lowest = float(self.motion.height(self._lowest_time()))
+            surface.begin_archive(lowest, float(returns[0] - surface.time), self.strictness)
         self._settle()
         if surface.clock["edge"] > 0 and self.cycle == 1:
             self._fall_at_start()

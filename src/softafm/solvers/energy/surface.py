@@ -264,14 +264,16 @@ class Surface:
         for name in clock.dtype.names:
             self.clock[name] = clock[name]
 
-    def begin_archive(self, lowest: float, strictness: float) -> None:
+    def begin_archive(self, lowest: float, duration: float, strictness: float) -> None:
         """Gather memory on a mesh of its own, too, about the contact at the ``lowest`` height, m.
 
-        There ``put_aside`` finds it as sharp as it was when the edge was there.
+        There ``put_aside`` finds it as sharp as it was when the edge was there; ``duration``, s, is
+        that of one visit of the tip.
         """
         finer = min(1.0, strictness**0.2)
         mesh = unit_mesh(ARCHIVE_SPACING * finer, ARCHIVE_GROWTH * finer, EXTENT)
-        self.archive = mesh, max(self.contact.contact_radius(lowest), self.open_frame)
+        radius = self.contact.contact_radius_after(lowest, duration)
+        self.archive = mesh, max(radius, self.open_frame)
         self.remember(np.zeros((len(self.lag_energy), mesh.nodes.size)))
 
     def put_aside(self) -> None:
