@@ -17,6 +17,8 @@ from softafm.cli import main
 from softafm.compiled.announce import announce_compilation
 
 NO_BROWSER = "no browser: "
+# Forces, energies and lengths here are far below 1e-12, by which approx lets any number be off.
+type(pytest.approx(1.0)).DEFAULT_ABSOLUTE_TOLERANCE = 0.0
 PATIENCE = 120  # s: for a machine that compiles first, or is busy
 
 

@@ -93,3 +93,19 @@ def test_a_relaxed_sample_stores_what_an_elastic_one_does():
 
     creeping = sa.StandardLinearSolid(2e9, 0.5e9, creep_time=1e-5, poisson=0.4)
     assert stored(creeping) == pytest.approx(stored(sa.Elastic(0.5e9, 0.4)), rel=1e-3)
+
+
+def test_ramp_balances_whose_tip_lets_go_of_a_wide_dent():
+    """The surface is then seen from the frame of a new contact, a fortieth as wide.
+
+    Twice what was left of the work went into dashpots, half of which there was not.
+    """
+    contact = sa.Contact(
+        sa.Cone(half_angle=1.1, apex_radius=37e-9),
+        sa.StandardLinearSolid(E0=5.9e5, E_inf=1.1e4, creep_time=1.67e-3, poisson=0.2),
+        sa.LennardJones(hamaker=3.6e-22, z0=0.45e-9),
+    )
+    ramp = sa.Triangle(start=135e-9, turn=-192e-9, speed=3.4e-4)
+    result = sa.force_spectroscopy(contact, sa.Cantilever(stiffness=0.45), ramp)
+    assert result.sizes["jump"] == 2
+    assert account(result) == pytest.approx(float(result["loop_energy"]), rel=2e-3)
