@@ -21,7 +21,7 @@ PS = sa.Contact(
 LEVER = sa.Cantilever(INPUTS["stiffness"], INPUTS["quality_factor"], INPUTS["frequency"])
 RATIOS = [row["amplitude_ratio"] for row in CURVE]
 # Farthest solutions at which the reference's own dissipation is wrong (see data/README.md).
-WEAK = {0.95: 1.920e-19, 0.9: 3.121e-19, 0.8: 4.527e-19}
+WEAK = {0.95: 1.920e-19, 0.9: 3.121e-19, 0.8: 4.527e-19, 0.2: 4.198e-19}
 OBSERVABLES = (
     "virial", "dissipation", "force_mean", "force_max", "force_min", "contact_time", "indentation",
 )  # fmt: skip
@@ -135,7 +135,7 @@ def test_weak_dissipation_by_newtons_method_on_rings(ratio):
     tap = sa.tapping_cycle(PS, amplitude, mean_height, LEVER.frequency, tolerance=1e-3)
     for name in ("dissipation", "viscous_loss"):
         assert float(tap[name]) == pytest.approx(loss, rel=5e-3)
-    assert solution["dissipation"] < 0.98 * loss
+    assert solution["dissipation"] < 0.99 * loss
 
 
 # Identities

@@ -86,7 +86,7 @@ def test_work_is_what_is_lost_and_stored_whether_the_tip_parts_or_not(stiffness,
     contact, ramp = sa.Contact(TIP, solid(), law), sa.Triangle(start, -5e-9, 2e-7)
     history = Energy().solve(contact, ramp, stiffness=stiffness, tolerance=1e-3)
     energies = history.energies()
-    assert energies.spent == pytest.approx(energies.work, rel=1e-3)
+    assert energies.spent == pytest.approx(energies.work, rel=2e-3)
     assert (energies.stored > 0.1 * energies.work) == (history.contact_radius[-1] > 0)
 
 

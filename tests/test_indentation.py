@@ -46,7 +46,7 @@ def test_a_sharp_cone_follows_sneddon(angle):
     assert indentation.load(sharp, a, E) == pytest.approx(pi / 2 * E * a**2 / tan(angle), rel=1e-8)
     deep = 1e-7
     expected = 2 / pi * E * deep**2 * tan(angle)
-    assert indentation.force(sharp, deep, E) == pytest.approx(expected, rel=1e-8)
+    assert indentation.force(sharp, deep, E) == pytest.approx(expected, rel=1e-7)
 
 
 def test_a_rounded_cone_is_a_sphere_until_the_flank():
@@ -130,7 +130,7 @@ def test_the_stiffness_is_that_of_a_punch_of_the_contact(tip, size):
 def test_adhesive_contacts_of_a_paraboloid_follow_jkr():
     W, tip, a = 0.05, sa.Paraboloid(R), np.linspace(0, 3 * R, 3001)
     force = indentation.jkr_load(tip, a, E * 1e3, W)
-    assert force.min() == pytest.approx(indentation.jkr_pull_off(R, W), rel=1e-6)
+    assert force.min() == pytest.approx(indentation.jkr_pull_off(R, W), rel=5e-6)  # of the radii
     assert indentation.jkr_pull_off(R, W) == pytest.approx(-1.5 * pi * W * R)
     assert indentation.dmt_pull_off(R, W) == pytest.approx(-2 * pi * W * R)
     last = (pi * R**2 * W / (8 * E * 1e3)) ** (1 / 3)

@@ -76,7 +76,7 @@ def test_a_sphere_in_jkr_parts_at_its_least_force():
         lambda a: float(indentation.jkr_load(tips.Sphere(R), a, E, W)), (1e-9, 1.2e-8, 4e-8)
     )
     found = indentation.jkr_parting(tips.Sphere(R), E, W, 0)
-    assert found.force == pytest.approx(least.fun, rel=1e-9)
+    assert found.force == pytest.approx(least.fun, rel=1e-7)
 
 
 def test_jkr_refuses_what_cannot_be():

@@ -35,7 +35,10 @@ def test_a_sample_that_has_no_time_to_creep_is_elastic(E0, E_inf, tolerance):
     found, elastic = run(slow, tolerance=tolerance), run(sa.Elastic(E0, 0.35), tolerance=tolerance)
     for name in ("force_min", "force_max"):
         assert float(found[name]) == pytest.approx(float(elastic[name]), rel=1e-4)
-    assert float(found["loop_energy"]) == pytest.approx(float(elastic["loop_energy"]), rel=1e-3)
+    least = 1e-5 * float(elastic["force_max"]) * 10e-9
+    assert float(found["loop_energy"]) == pytest.approx(
+        float(elastic["loop_energy"]), rel=1e-3, abs=least
+    )
     assert found["jump_time"].size == elastic["jump_time"].size
 
 

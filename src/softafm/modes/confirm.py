@@ -125,7 +125,7 @@ def _seek(
     One is enough where the map holds what is ``expected``.
     """
     amplitude, approach = place
-    slope, last = taps.excess_slope(amplitude, approach), None
+    slope, last, holds = taps.excess_slope(amplitude, approach), None, False
     for _ in range(_MOST_TAPS):
         values = tap(amplitude, approach)
         here = _Tapped(approach, values, float(drive.excess(amplitude, values[0], values[1])))
@@ -133,7 +133,12 @@ def _seek(
         if last is not None and here.approach != last.approach:
             secant = (here.excess - last.excess) / (here.approach - last.approach)
             slope = secant if secant * slope > 0 else slope
-        holds = last is not None or not _miss(here, expected, amplitude, tolerance)
+        if last is None:
+            holds = not _miss(here, expected, amplitude, tolerance)
+        elif here.approach != last.approach:  # what is left to the solution changes the loss little
+            change = (here.values[1] - last.values[1]) / (here.approach - last.approach)
+            loss = _find_loss(values, amplitude)
+            holds = abs(change * here.excess / slope) <= 0.5 * _LOSS * tolerance * loss
         if abs(here.excess) <= _CLOSE * tolerance and holds:
             return
         last = here
@@ -143,10 +148,14 @@ def _seek(
 
 def _miss(tapped: _Tapped, expected: np.ndarray, amplitude: float, tolerance: float) -> bool:
     """Whether the map is off by more than the tolerance where a tap was run."""
-    force = np.abs(tapped.values[[OBSERVABLES.index("force_max"), OBSERVABLES.index("force_min")]])
-    loss = max(abs(tapped.values[1]), _FAINT * force.max() * amplitude)
-    off = abs(expected[1] - tapped.values[1])
+    loss, off = _find_loss(tapped.values, amplitude), abs(expected[1] - tapped.values[1])
     return abs(tapped.excess) > tolerance or off > _LOSS * tolerance * loss
+
+
+def _find_loss(values: np.ndarray, amplitude: float) -> float:
+    """Return the dissipation of a tap, J, or what one less than that is measured against."""
+    force = np.abs(values[[OBSERVABLES.index("force_max"), OBSERVABLES.index("force_min")]])
+    return max(abs(values[1]), _FAINT * force.max() * amplitude)
 
 
 def _settle(

@@ -214,8 +214,12 @@ class Run:
                 and (
                     self.unsteady < SURELY_STEADY
                     or _are_near(forces, before, self.strictness)
-                    # What still changes after some such cycles are their errors.
-                    or (self.cycle > 2 and max(misses[-3:]) <= self.steadiness)
+                    # What still changes after such cycles, but for good, are their errors.
+                    or (
+                        self.cycle > 2
+                        and max(misses[-3:]) <= self.steadiness
+                        and misses[-1] > 0.5 * misses[-3]
+                    )
                 )
             )
             if not caught and (steady or _stagnates(misses)):
