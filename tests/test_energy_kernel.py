@@ -508,8 +508,8 @@ def test_steps_equal_those_of_a_plain_newton_method():
     controls = Controls(
         end=1.0, shortest_step=step / 10, longest_step=step, top_speed=1e-300, open_frame=FRAME,
         edge_gap=LAW.gap_of_largest_tension, open_gap=1.0, prediction=1e3, memory=1e3, force=1e3,
-        newton=1e-11, slack=2.0, held=0.0, cover=0.0, least_frame=0.0, finest=0.0, coarsest=np.inf, most_tries=1e6,
-        trigger=np.inf, ride_from=np.inf, trace_from=np.inf,
+        newton=1e-11, slack=2.0, held=0.0, cover=0.0, least_frame=0.0, finest=0.0,
+        coarsest=np.inf, most_tries=1e6, trigger=np.inf, ride_from=np.inf, trace_from=np.inf,
     )  # fmt: skip
     n, modes = MESH.nodes.size, retardation.size
     past = 0.2 / np.array([[3e-9], [1e-9]]) * np.array([[Z0], [-Z0]]) / (1 + MESH.nodes**2)

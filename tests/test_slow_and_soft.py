@@ -77,3 +77,15 @@ def test_a_conforming_contact_parts_without_spikes(tolerance):
     assert force[down[-1] :].max() == force[down[-1]]
     assert float(result["force_min"]) == pytest.approx(-1.029e-5, rel=1e-2)
     assert result["jump_time"].size == 0
+
+
+def test_a_contact_that_would_only_jump_after_creep_loses_its_energy_to_the_dashpots():
+    """The solid is rigid at first and crept in 1e-5 of the time in which the tip comes near."""
+    contact = sa.Contact(
+        sa.Sphere(99e-9),
+        sa.KelvinVoigt(E=1.02e7, creep_time=1.4e-7, poisson=0.28),
+        sa.Morse(work_of_adhesion=4.6e-4, z0=0.49e-9, decay=0.21e-9),
+    )
+    result = sa.force_distance(contact, sa.Triangle(23e-9, -30e-9, 4.8e-8))
+    assert result.sizes["jump"] == 0
+    assert float(result["viscous_loss"]) == pytest.approx(float(result["loop_energy"]), rel=0.02)

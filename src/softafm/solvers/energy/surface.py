@@ -376,7 +376,7 @@ class Surface:
         tip, pressure, scratch = np.empty(n), np.empty(n), np.empty(n)
         rise, far_work = np.empty(mesh.far.size), np.empty((3, mesh.far.size))
         raise_tip(profile, self.parameters.tip, mesh, frame, scratch, tip, rise)
-        h0, memory = height_at(self.time, self.parameters.height), self.memory()
+        h0 = height_at(self.time, self.parameters.height)
         elements = self.parameters.compliance[1:]
         self.fields[DEFORMATION] = u
         load = (v - u) / self.parameters.compliance[0]
