@@ -145,3 +145,29 @@ def test_taps_that_fail_cost_no_curve_and_are_told():
     assert sum("solutions may be missing; no stable surface found" in text for text in texts) == 1
     with pytest.raises(sa.DivergedError, match="no stable surface found"):
         sa.approach_curve(contact, lever, free, [0.2, 0.9], solver=GivesUp(deepest=1.0))
+
+
+# It is there to 0.02 nm, of which the run warns.
+@pytest.mark.filterwarnings("ignore:.*solutions that were run:softafm.AccuracyWarning")
+def test_a_solution_at_the_farthest_taps_has_a_height():
+    # Beyond them the map ends, and with it the slopes that a solution is sought by.
+    contact = sa.Contact(
+        sa.Sphere(9.7e-9),
+        sa.StandardLinearSolid(2e9, 1e8, creep_time=1e-7, poisson=0.49),
+        sa.Exponential(work_of_adhesion=22.9e-3, z0=0.196e-9, decay=93.7e-12, core=19.6e-12),
+    )
+    lever = sa.Cantilever(4.59, 876.0, 156.8e3)
+    result = sa.approach_curve(contact, lever, 15.55e-9, [0.95, 0.6, 0.32], tolerance=1e-3)
+    height = result["mean_height"].sel(branch="attractive").values[0]
+    taps = [
+        sa.tapping_cycle(contact, 0.95 * 15.55e-9, height + d, 156.8e3) for d in (-5e-11, 5e-11)
+    ]
+    k, Q, A0, A = 4.59, 876.0, 15.55e-9, 0.95 * 15.55e-9
+    excess = [
+        np.hypot(
+            A / A0 * (1 + Q * float(tap.dissipation) / (np.pi * k * A**2)),
+            2 * Q * float(tap.virial) / (k * A * A0),
+        )
+        for tap in taps
+    ]
+    assert excess[0] > 1 > excess[1]

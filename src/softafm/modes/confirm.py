@@ -21,9 +21,9 @@ _FIRST, _MOST_TAPS = 16, 5
 _CLOSE, _FAR, _GRAZING, _MEET = 0.2, 1.0, 1.5, 5e-3
 """Tolerances that the excess may be off where slopes give the rest, where a solution holds, and
 where a tap decides whether two solutions meet, and where it cannot tell either."""
-_NEAR, _STEP, _FARTHEST, _ASIDE = 0.1, 1e-2, 0.1, 0.25
-"""Units that a height may be off, and over which slopes are taken; part of the depth by which one
-moves at most, at least a unit; units between taps where two solutions may meet."""
+_NEAR, _FARTHEST, _ASIDE = 0.1, 0.1, 0.25
+"""Units that a height may be off; part of the depth by which one moves at most, at least a unit;
+units between taps where two solutions may meet."""
 _LOSS, _FAINT = 2.0, 4e-4
 """Tolerances that a dissipation may be off, relative to itself or to this share of the largest
 force times the amplitude."""
@@ -125,7 +125,7 @@ def _seek(
     One is enough where the map holds what is ``expected``.
     """
     amplitude, approach = place
-    slope, last, holds = taps.excess_slope(amplitude, approach), None, False
+    slope, last, holds = taps.find_slopes(amplitude, approach)[0], None, False
     for _ in range(_MOST_TAPS):
         values = tap(amplitude, approach)
         here = _Tapped(approach, values, float(drive.excess(amplitude, values[0], values[1])))
@@ -169,9 +169,7 @@ def _settle(
         slopes = (best.values - other.values) / (best.approach - other.approach)
         slope = (best.excess - other.excess) / (best.approach - other.approach)
     else:
-        step = _STEP * taps.unit
-        far, near = (taps.observables(amplitude, best.approach + s) for s in (step, -step))
-        slopes, slope = (far - near) / (2 * step), taps.excess_slope(amplitude, best.approach)
+        slope, slopes = taps.find_slopes(amplitude, best.approach)
     off = -best.excess / slope if slope else np.inf
     crossed = len({each.excess > 0 for each in tapped}) > 1
     found = crossed or not others or abs(best.excess) <= _FAR * tolerance

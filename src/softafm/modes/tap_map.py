@@ -103,14 +103,17 @@ class TapMap:
         between = (every[:-1, None] + steps * np.diff(every)[:, None]).ravel()
         return np.append(between, every[-1])[::-1]
 
-    def excess_slope(self, amplitude: float, approach: float) -> float:
-        """Slope of the excess along d, 1/m."""
+    def find_slopes(self, amplitude: float, approach: float) -> tuple[float, np.ndarray]:
+        """Slopes along d of the excess, 1/m, and of the observables, per m, (7,).
+
+        Beyond the farthest taps there is nothing: there they are taken from nearer ones.
+        """
         step = 1e-2 * self.unit
-        far, near = (
-            self._drive.excess(amplitude, *self.virial_and_dissipation(amplitude, approach + s))
-            for s in (step, -step)
-        )
-        return float(far - near) / (2 * step)
+        far, near = (self.observables(amplitude, approach + each) for each in (step, -step))
+        if not np.isfinite(far).all():
+            far, near = (self.observables(amplitude, approach + each) for each in (0.0, -2 * step))
+        outer, inner = (float(self._drive.excess(amplitude, *each[:2])) for each in (far, near))
+        return (outer - inner) / (2 * step), (far - near) / (2 * step)
 
     def _combine(self, amplitude: ArrayLike, approach: ArrayLike, pair: bool) -> np.ndarray:
         """Lagrange's polynomial in ln A through the lines, times √A."""
