@@ -82,7 +82,7 @@ DAMPING = 1.5
 
 ARCHIVE_SPACING, ARCHIVE_GROWTH = 0.05, 0.2
 """The mesh of memory that a tip comes back to, as ``COARSEST_SPACING`` and ``GROWTH`` are: the
-dissipation of second taps on fluids was 1 to 5 % off without (tests/test_flowing_taps.py). With
+dissipation of second taps on fluids was 1 to 5 % off without (tests/test_repeated_taps.py). With
 half the growth a fluid shows the errors of interpolation in its steps, not in its result."""
 
 AS_WIDE = 0.95
