@@ -102,7 +102,7 @@ def load_compiled() -> None:
     lever = sa.Cantilever(1.0)
     for modulus in 1e9, 1e7:
         sample = sa.StandardLinearSolid.from_relaxation_time(modulus, modulus / 10, 1e-4, 0.3)
-        for each in sample, sa.Elastic(modulus, 0.3):
+        for each in sa.Elastic(modulus, 0.3), sample:
             contact = sa.Contact(tip, each, law)
             sa.force_spectroscopy(contact, lever, sa.Triangle(9e-9, 0.0, 1e-6))
         sa.tapping_cycle(contact, 1e-8, 1e-8, 1e5, cycles="steady")

@@ -389,9 +389,13 @@ def test_a_nonlinear_feedback_is_found():
     ],
 )
 def test_cycles_that_scatter_are_not_steady_by_chance(misses, scatter):
-    from softafm.solvers.energy.run import _scatter
+    from softafm.solvers.energy.steadiness import Steadiness
 
-    assert _scatter(misses) == pytest.approx(scatter)
+    cycles = Steadiness(strictness=1.0)
+    cycle = np.array([(0.0, 1e-9), (1.0, 2e-9)], [("time", float), ("force", float)])
+    for miss in misses:
+        cycles.note(cycle, miss)
+    assert cycles.scatter == pytest.approx(scatter)
 
 
 def test_an_elastic_tap_that_never_comes_off_is_steady_only_once_it_is_caught():

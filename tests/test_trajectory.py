@@ -447,7 +447,9 @@ def test_a_fast_peck_after_a_slow_approach_is_not_missed(peck):
     heights = np.concatenate([[40e-9], PECK.height(PECK.breaks)])
     found = sa.force_distance(CONTACT, sa.Trajectory(time, heights))
     assert found.attrs["solver_attempted_steps"] < 2 * peck.attrs["solver_attempted_steps"]
-    assert_same_curve(found, peck, 1.2e-2)  # its energy, by other steps
+    # Its energy, a small difference, differs by 1 % as its steps are others.
+    assert_same_curve(found, peck.assign(loop_energy=found["loop_energy"]), 2e-3)
+    assert float(found["loop_energy"]) == pytest.approx(float(peck["loop_energy"]), rel=0.012)
 
 
 def test_a_rest_of_the_base_of_a_lever_costs_next_to_nothing():

@@ -32,7 +32,7 @@ def suggest_longer_range(contact: Any) -> str:
 
 
 def _doubt_steadiness(run: "Run") -> tuple[AccuracyWarning, ...]:
-    if run.unsteady <= run.steadiness:
+    if run.unsteady <= run.steadiness.allowed:
         return ()
     text = (
         f"no steady cycle after {run.cycle}: the surface starts the last ones off by up to "

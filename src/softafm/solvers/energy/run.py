@@ -1,7 +1,6 @@
 """One run of the energy solver: from stop to stop, through falls, into a history."""
 
 from collections.abc import Iterator
-from itertools import pairwise
 from typing import Any, cast
 
 import numpy as np
@@ -33,6 +32,7 @@ from softafm.solvers.energy.layout import (
     TRIGGERED,
     Controls,
 )
+from softafm.solvers.energy.steadiness import Steadiness
 from softafm.solvers.energy.step import advance
 from softafm.solvers.energy.surface import Surface
 from softafm.solvers.energy.tuning import (
@@ -50,9 +50,6 @@ from softafm.solvers.energy.tuning import (
     SHORTER,
     SHORTEST_STEP,
     SLIPS_AGAIN,
-    STAGNANT,
-    STEADY,
-    SURELY_STEADY,
 )
 from softafm.solvers.history import History
 from softafm.solvers.periodic import PeriodicMemory
@@ -114,8 +111,7 @@ class Run:
         self.coarsest = 0.0, 0.0
         self.slips, self.end_of_slip = 0, -np.inf
         self.cycle, self.unsteady = 1, 0.0
-        # How well a memory can be found is limited by the errors of a cycle.
-        self.steadiness = STEADY * self.strictness**0.5
+        self.steadiness = Steadiness(self.strictness)
         self.falls: list[int] = []  # the records that they led to
         self.jumps: list[int] = []
         self.gained = 0.0
@@ -181,8 +177,6 @@ class Run:
         if times.max(initial=0) > period:  # small errors of a cycle add up
             surface.clock["contraction"] = np.inf
         memory: np.ndarray | None = None
-        forces: np.ndarray | None = None
-        misses: list[float] = []
         dent = Dent(surface, period)
         shapes: list[Shape] = self.shapes or []
         if dent.rules:
@@ -206,24 +200,11 @@ class Run:
             else:
                 memory, off = periodic.next_start(memory, gained)
             self.unsteady = off / surface.edge_gap
-            misses.append(self.unsteady)
+            self.steadiness.note(self.records[: self.count], self.unsteady)
             caught = surface.clock["edge"] > 0 and self.records[0]["edge"] == 0
-            forces, before = _sum_up(self.records[: self.count]), forces
-            steady = (
-                self.unsteady <= self.steadiness
-                and (
-                    self.unsteady < SURELY_STEADY
-                    or _are_near(forces, before, self.strictness)
-                    # What still changes after such cycles, but for good, are their errors.
-                    or (
-                        self.cycle > 2
-                        and max(misses[-3:]) <= self.steadiness
-                        and misses[-1] > 0.5 * misses[-3]
-                    )
-                )
-            )
-            if not caught and (steady or _stagnates(misses)):
-                self.unsteady = max(self.unsteady, 0.0 if dent.rules else _scatter(misses))
+            if not caught and (self.steadiness.reached or self.steadiness.stagnates):
+                scatter = 0.0 if dent.rules else self.steadiness.scatter
+                self.unsteady = max(self.unsteady, scatter)
                 return
             surface.remember(memory)
 
@@ -425,37 +406,3 @@ class Run:
             },
             warnings=list_doubts(self),
         )
-
-
-def _sum_up(records: np.ndarray) -> np.ndarray:
-    """Return the largest, smallest and mean force of a cycle, N."""
-    force, time = records["force"], records["time"]
-    mean = np.diff(time) @ (force[1:] + force[:-1]) / 2 / (time[-1] - time[0])
-    return np.array([force.max(), force.min(), mean])
-
-
-def _are_near(forces: np.ndarray, before: np.ndarray | None, strictness: float) -> bool:
-    """Whether forces of two cycles differ by less than half the tolerance of themselves."""
-    if before is None:
-        return False
-    least = 0.01 * np.abs(forces).max()
-    allowed = 5e-3 * strictness * np.fmax(np.abs(forces), least)
-    return bool((np.abs(forces - before) <= allowed).all())
-
-
-def _stagnates(misses: list[float]) -> bool:
-    """Whether misses, in gaps, are small and fall no more: what is left are errors of a cycle."""
-    if len(misses) < 2 * STAGNANT or misses[-1] > 1:
-        return False
-    before, recent = misses[-2 * STAGNANT : -STAGNANT], misses[-STAGNANT:]
-    return min(recent) > 0.5 * min(before)
-
-
-def _scatter(misses: list[float]) -> float:
-    """How far off cycles are that do not settle, in gaps, even if one is near by chance; else 0.
-
-    The misses of cycles that settle fall, once they are small, but for one or two.
-    """
-    small = misses[next((i for i, miss in enumerate(misses) if miss < 1), len(misses)) :]
-    rises = sum(later > earlier for earlier, later in pairwise(small))
-    return float(np.median(small[-STAGNANT:])) if rises > 2 else 0.0
