@@ -618,7 +618,16 @@ def test_doubtful_accuracy_is_said_in_one_line(folder, softafm, monkeypatch):
     assert (code, err) == (0, "softafm: warning: the mesh is too coarse\n")
 
 
+@pytest.fixture
+def heard_interrupts():
+    """Interrupts are heard, which a shell lets its background jobs ignore."""
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)
+    yield
+    signal.signal(signal.SIGINT, before)
+
+
 @posix
+@pytest.mark.usefixtures("heard_interrupts")
 @pytest.mark.parametrize("lost_as", [None, TypeError("missing argument")])
 def test_an_interrupt_that_compiled_code_swallows_still_ends_the_run(
     folder, softafm, monkeypatch, lost_as
