@@ -113,4 +113,9 @@ def _find_stored(history: "History", inside: slice, back: bool, jumped: bool) ->
     free = not jumped or edge[0] == edge[-1] == 0
     if is_steady(history.motion) or (back and free and not history.viscous_power.any()):
         return 0.0
-    return after - before if edge.size == history.time.size else None
+    if edge.size == history.time.size:
+        return after - before
+    if history.stored_energy is None:
+        return None
+    before, after = history.stored_energy[inside][[0, -1]]
+    return None if isnan(after - before) else float(after - before)

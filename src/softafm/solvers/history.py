@@ -67,6 +67,9 @@ class History:
     viscous_energy
         Energy that the dashpots took in the step that ends at each instant, J, shape (n,); None if
         the solver does not know it better than from their power.
+    stored_energy
+        Energy held by sample, surfaces and lever at each instant, J, shape (n,), NaN where it was
+        not measured; None if the solver knows it at the ends at most.
     """
 
     time: np.ndarray
@@ -83,6 +86,7 @@ class History:
     diagnostics: dict[str, float] = field(default_factory=dict)
     warnings: tuple[AccuracyWarning, ...] = ()
     viscous_energy: np.ndarray | None = None
+    stored_energy: np.ndarray | None = None
     _quadratures: "dict[Any, Quadrature]" = field(
         default_factory=dict, init=False, repr=False, compare=False
     )

@@ -115,18 +115,19 @@ class Run:
         self.falls: list[int] = []  # the records that they led to
         self.jumps: list[int] = []
         self.gained = 0.0
-        self.stored = 0.0, 0.0
+        self.stored: dict[int, float] = {}  # J, by the record at which it was measured
 
     def steps(self) -> Iterator[float]:
         """Run, yielding the fraction of the motion done at every return of the compiled loop."""
         surface = self.surface
-        if (returns := self._find_returns()).size:
+        tops = self._find_tops()
+        if (returns := self._find_returns(tops)).size:
             lowest = float(self.motion.height(self._lowest_time()))
             surface.begin_archive(lowest, float(returns[0] - surface.time), self.strictness)
         self._settle()
         if surface.clock["edge"] > 0 and self.cycle == 1:
             self._fall_at_start()
-        stored = self._find_stored()
+        self._measure_stored()
         trigger = self._trigger(-np.inf)
         if surface.clock["force"] >= trigger:
             raise ValueError(
@@ -161,9 +162,11 @@ class Run:
                 if outcome == TRIGGERED:
                     self._turn()
                 yield (surface.time - first) / (self.breaks[-1] - first)
+            if stop in tops:
+                self._measure_stored()
             if stop in returns and surface.clock["edge"] == 0:
                 surface.put_aside()
-        self.stored = stored, self._find_stored()
+        self._measure_stored()
 
     def cycles(self) -> Iterator[float]:
         """Run the motion over and over, until surface and memory end a cycle as they began it.
@@ -187,6 +190,7 @@ class Run:
             self.count = 0
             self.falls.clear()
             self.jumps.clear()
+            self.stored.clear()
             self.gained = 0.0
             if self.shapes is not None:
                 self.shapes.clear()
@@ -217,8 +221,14 @@ class Run:
         """Return when the motion is lowest, s."""
         return float(self.stops[np.argmin(self.motion.height(self.stops))])
 
-    def _find_returns(self) -> np.ndarray:
-        """Return the instants at which the tip, free of the sample, begins to come back, s.
+    def _find_tops(self) -> np.ndarray:
+        """Return the instants inside the motion at which the tip is highest and turns, s."""
+        heights = self.motion.height(self.stops)
+        tops = (heights[1:-1] > heights[:-2]) & (heights[1:-1] >= heights[2:])
+        return self.stops[1:-1][tops]
+
+    def _find_returns(self, tops: np.ndarray) -> np.ndarray:
+        """Return those of the ``tops`` at which the tip, free of the sample, begins to come back.
 
         None if that is no matter, or where memory rides with the edge: what is gathered on a mesh
         of its own is filtered at fixed radii, too coarsely for such steps.
@@ -226,9 +236,7 @@ class Run:
         surface = self.surface
         if is_steady(self.motion) or surface.trace_from < np.inf or not surface.lag_energy.size:
             return np.empty(0)
-        heights = self.motion.height(self.stops)
-        tops = 1 + np.flatnonzero((heights[1:-1] > heights[:-2]) & (heights[1:-1] >= heights[2:]))
-        return self.stops[tops[heights[tops] > self.contact.reach]]
+        return tops[self.motion.height(tops) > self.contact.reach]
 
     def _next_stop(self) -> float | None:
         """Return the next instant that a step has to meet, s, or None at the end."""
@@ -294,9 +302,10 @@ class Run:
             self.records = longer
         return self.records[self.count : self.count + _CHUNK]
 
-    def _find_stored(self) -> float:
-        """Return the energy stored now, J; 0 in a steady cycle, which ends as it began."""
-        return 0.0 if is_steady(self.motion) else self.surface.stored_energy()
+    def _measure_stored(self) -> None:
+        """Note the energy stored now: 0 in a steady cycle, which ends as it began."""
+        now = 0.0 if is_steady(self.motion) else self.surface.stored_energy()
+        self.stored[self.count - 1] = now
 
     def _settle(self) -> None:
         """Equilibrate at frozen memory, and keep a record of it."""
@@ -378,6 +387,8 @@ class Run:
         cuts = sorted(cuts + [(i, i) for i in self.falls])
         starts = [0] + [start for start, _ in cuts]
         ends = [end for _, end in cuts] + [time.size]
+        stored = np.full(time.size, np.nan)
+        stored[list(self.stored)] = list(self.stored.values())
         return History(
             time=time,
             tip_height=records["height"],
@@ -386,6 +397,7 @@ class Run:
             axis_deformation=records["axis"],
             viscous_power=records["loss"],
             viscous_energy=records["lost"],
+            stored_energy=stored,
             pieces=tuple(slice(a, b) for a, b in zip(starts, ends, strict=True)),
             motion=self.motion,
             jump_time=time[self.jumps],
@@ -400,8 +412,8 @@ class Run:
                 "finest_spacing": surface.finest_spacing,
                 "growth": surface.growth,
                 "cycles": max(self.cycle, count_periods(self.motion)),
-                "stored_energy_start": self.stored[0],
-                "stored_energy_end": self.stored[1],
+                "stored_energy_start": self.stored.get(0, np.nan),
+                "stored_energy_end": self.stored.get(time.size - 1, np.nan),
                 "wall_time": seconds,
             },
             warnings=list_doubts(self),
