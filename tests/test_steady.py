@@ -392,10 +392,37 @@ def test_cycles_that_scatter_are_not_steady_by_chance(misses, scatter):
     from softafm.solvers.energy.steadiness import Steadiness
 
     cycles = Steadiness(strictness=1.0)
-    cycle = np.array([(0.0, 1e-9), (1.0, 2e-9)], [("time", float), ("force", float)])
+    fields = [(name, float) for name in ("time", "force", "height", "lost", "jump")]
+    cycle = np.array([(0.0, 1e-9, 1e-9, 0.0, 0.0), (1.0, 2e-9, 2e-9, 0.0, 0.0)], fields)
     for miss in misses:
         cycles.note(cycle, miss)
     assert cycles.scatter == pytest.approx(scatter)
+
+
+@pytest.mark.parametrize(
+    ("sample", "law", "tip", "tap"),
+    [
+        (  # its dent swung to and fro, less by an eighth each cycle, and was taken as steady
+            sa.KelvinVoigt(2.2e8, 1.41e-5, 0.366),
+            sa.Exponential(2.44e-3, 0.454e-9, 0.439e-9),
+            sa.Paraboloid(13e-9),
+            (14.4e-9, 14.5e-9, 2e5),
+        ),
+        (  # its dent was found and lost again every third cycle
+            sa.StandardLinearSolid(26.1e9, 0.109e9, 6.51e-6, 0.343),
+            sa.LennardJones(6.05e-21, 0.358e-9),
+            sa.Paraboloid(45.7e-9),
+            (30.5e-9, 29.8e-9, 6.15e5),
+        ),
+    ],
+)
+def test_a_dent_that_overshoots_settles(sample, law, tip, tap):
+    contact = sa.Contact(tip, sample, law)
+    steady = sa.tapping_cycle(contact, *tap)
+    assert steady.cycles_run < 12
+    finer = sa.tapping_cycle(contact, *tap, tolerance=1e-3)
+    for name in ("force_max", "force_mean", "virial", "viscous_loss"):
+        assert float(steady[name]) == pytest.approx(float(finer[name]), rel=1e-2), name
 
 
 def test_an_elastic_tap_that_never_comes_off_is_steady_only_once_it_is_caught():

@@ -19,6 +19,7 @@ from softafm.bodies.stiffness import Stiffness
 from softafm.errors import DivergedError
 from softafm.solvers.energy.layout import LOAD
 from softafm.solvers.energy.tuning import MUCH_SLOWER
+from softafm.solvers.periodic import Mixing
 
 if TYPE_CHECKING:
     from softafm.solvers.energy.surface import Surface
@@ -28,7 +29,7 @@ _LARGEST = 4.0
 """Step of Newton's method at first, in gaps."""
 _BACK, _MOST_BACK = 0.3, 3
 """How far back a step goes that made the misses larger; how often, before another way is tried."""
-_NEAR = 0.05
+_NEAR = 0.3
 """Misses, in gaps, that are not looked back at: they are errors of the cycles, too."""
 _LOOKS = 80
 """Instants of a cycle at which the contact is looked at."""
@@ -49,6 +50,7 @@ class Dent:
         self._fast = float(compliance.sum()) - self._slow
         self._last, self._part, self._largest = np.inf, 1.0, _LARGEST
         self._backs, self._attracted = 0, False
+        self._mixing = Mixing(self._compliances[:, None])
         self._start = self._step = np.empty(0)
 
     @property
@@ -94,6 +96,7 @@ class Dent:
         raw, unit = self._measure(miss), self._surface.edge_gap
         if raw > max(self._last, _NEAR * unit) and self._backs < _MOST_BACK:  # too far: go back
             self._backs += 1
+            self._mixing.forget()
             self._part *= _BACK
             self._largest = max(_BACK * self._largest, 1.0)
             return self._start + self._part * self._step, raw
@@ -106,7 +109,10 @@ class Dent:
         self._start, self._last = start, raw
         self._part = min(1.0, self._largest * unit / max(off, 1e-300))
         self._step = step
-        return start + self._part * step, min(raw, off)
+        if self._part < 1:
+            self._mixing.forget()
+            return start + self._part * step, min(raw, off)
+        return self._mixing.next_trial(start, step), min(raw, off)
 
     def _measure(self, memory: np.ndarray) -> float:
         """Return the largest displacement of the surface by a memory, m."""

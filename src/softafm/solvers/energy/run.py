@@ -90,8 +90,8 @@ class Run:
             edge_gap=gap,
             open_gap=self.surface.open_gap,
             prediction=PREDICTION_ERROR * self.strictness**0.7,
-            memory=min(MEMORY_ERROR * self.strictness, 0.05),
-            force=FORCE_ERROR * self.strictness,
+            memory=min(MEMORY_ERROR * self._tighten(1.3), 0.05),
+            force=FORCE_ERROR * self._tighten(1.2),
             newton=self.surface.accuracy,
             slack=LAG,
             held=0.0,
@@ -220,6 +220,10 @@ class Run:
     def _lowest_time(self) -> float:
         """Return when the motion is lowest, s."""
         return float(self.stops[np.argmin(self.motion.height(self.stops))])
+
+    def _tighten(self, power: float) -> float:
+        """Return the strictness, which counts more where it is below 1."""
+        return min(self.strictness, self.strictness**power)
 
     def _find_tops(self) -> np.ndarray:
         """Return the instants inside the motion at which the tip is highest and turns, s."""

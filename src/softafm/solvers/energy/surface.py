@@ -46,8 +46,8 @@ from softafm.solvers.energy.tuning import (
     FINER_THAN_NEEDED,
     FINEST_GROWTH,
     GROWTH,
-    GROWTH_IF_FAR_SOFTER,
     GROWTH_IF_SLACK,
+    GROWTH_IF_SOFTER,
     GROWTH_IF_STEEP,
     HARDLY_SOFTER,
     HELD,
@@ -55,6 +55,7 @@ from softafm.solvers.energy.tuning import (
     RIDE_FROM,
     SLACK,
     SLACKER,
+    SOFTER,
     SPACING,
     SPACING_IF_FAR_SOFTER,
     TOO_SLOW,
@@ -107,17 +108,19 @@ class Surface:
         at_least = min(strictness, 1.0)
         self.accuracy = EQUILIBRIUM_ERROR * at_least
         sharpness = contact.surface.sharpness if contact.adhesive else 1.0
-        self.target = SPACING * at_least**0.2 / max(1.0, sharpness)
-        self.growth = GROWTH * min(1.0, strictness**0.17) * find_fineness(contact, motion)
+        finer = at_least**0.25
+        self.target = SPACING * finer / max(1.0, sharpness)
+        self.growth = GROWTH * finer * find_fineness(contact, motion)
         # A stiff punch parts everywhere at once: the mesh stays at its rim, wherever the edge is.
         self.rimmed = contact.steep and contact.tabor_softened < SLACK
         if contact.steep and not self.rimmed:
-            self.growth = min(self.growth, GROWTH_IF_STEEP * min(1.0, strictness**0.17))
+            self.growth = min(self.growth, GROWTH_IF_STEEP * finer)
         period = float(breaks[-1] - breaks[0])
         duration = inf if is_steady(motion) else period
-        if find_softening(self.parameters, duration) > FAR_SOFTER:
-            # No elastic answer evens out what the nodes do not resolve.
-            self.growth = min(self.growth, GROWTH_IF_FAR_SOFTER)
+        softening = find_softening(self.parameters, duration)
+        if softening > SOFTER:  # little elastic answer evens out what the nodes do not resolve
+            self.growth = min(self.growth, GROWTH_IF_SOFTER * finer)
+        if softening > FAR_SOFTER:
             self.target *= SPACING_IF_FAR_SOFTER
         # Where the tip rises steeply, at the rim of a punch, it holds the edge; and a sample that
         # is all memory parts evenly, without an edge.
@@ -129,7 +132,7 @@ class Surface:
         traced = tabor > SLACKER and not is_steady(motion) and isinf(contact.body.length)
         self.trace_from = TRACE_FROM if traced else inf
         if slack and find_softening(self.parameters, period) < HARDLY_SOFTER:
-            self.growth = min(self.growth, GROWTH_IF_SLACK * min(1.0, strictness**0.17))
+            self.growth = min(self.growth, GROWTH_IF_SLACK * finer)
         self.too_slow = TOO_SLOW[1 if is_steady(motion) else 0] * period
         self.held = choose_spacing_held(self.parameters, duration)
         self.finest_level = max(0, ceil(log2(COARSEST_SPACING / finest_spacing)))

@@ -159,9 +159,10 @@ GROWTH = 0.3
 """Logarithmic growth of the spacing a node away from the edge (``softafm docs performance``, "What
 did not help": 0.45 slips in slack contacts)."""
 
-GROWTH_IF_FAR_SOFTER, SPACING_IF_FAR_SOFTER = 0.2, 0.5
-"""The same where a sample is all memory, and the part of the spacing at the edge: the pull-off of a
-slow tap was 1.2 % off, that of a punch 3 %; ramps take fewer steps, as the edge catches on none."""
+SOFTER, GROWTH_IF_SOFTER, SPACING_IF_FAR_SOFTER = 20.0, 0.2, 0.5
+"""The same where a sample gains more compliance than the first, in instantaneous ones, and the part
+of the spacing at the edge where it is all memory (``FAR_SOFTER``): the largest force of a slow tap
+was 2.4 % off, the pull-off of a punch 3 %; ramps take fewer steps, as the edge catches on none."""
 
 GROWTH_IF_SLACK = 0.22
 """The same where an edge rides and nothing creeps: the largest force of sticky taps, a fifth of the
@@ -192,7 +193,7 @@ FINEST_TARGET = 0.02
 PREDICTION_ERROR = 0.03
 """Largest error of the extrapolated shape, relative to the gap, at a tolerance of 1e-2."""
 
-MEMORY_ERROR = 0.005
+MEMORY_ERROR = 0.0025
 """Largest error of the memory in a step, relative to the gap, at that tolerance."""
 
 FORCE_ERROR = 0.0075
@@ -278,7 +279,7 @@ STEADY = 1e-2
 at a tolerance of 1e-2: what the errors of a cycle leave."""
 
 SURELY_STEADY = 1e-4
-"""The same below which a cycle is steady, whatever the forces of the one before."""
+"""The same below which a first cycle is steady, with none before it to compare."""
 
 MUCH_SLOWER = 4.0
 """Compliance that a steady cycle finds as it was left, in that which acts within the cycle, beyond
