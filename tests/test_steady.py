@@ -404,7 +404,7 @@ def test_cycles_that_scatter_are_not_steady_by_chance(misses, scatter):
     [
         (  # its dent swung to and fro, less by an eighth each cycle, and was taken as steady
             sa.KelvinVoigt(2.2e8, 1.41e-5, 0.366),
-            sa.Exponential(2.44e-3, 0.454e-9, 0.439e-9),
+            sa.Exponential(2.44e-3, 0.454e-9, 0.439e-9, 0.0454e-9),
             sa.Paraboloid(13e-9),
             (14.4e-9, 14.5e-9, 2e5),
         ),
