@@ -193,7 +193,7 @@ FINEST_TARGET = 0.02
 PREDICTION_ERROR = 0.03
 """Largest error of the extrapolated shape, relative to the gap, at a tolerance of 1e-2."""
 
-MEMORY_ERROR = 0.0025
+MEMORY_ERROR = 0.005
 """Largest error of the memory in a step, relative to the gap, at that tolerance."""
 
 FORCE_ERROR = 0.0075
