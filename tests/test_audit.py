@@ -185,3 +185,14 @@ def test_info_says_before_a_run_that_it_ends_in_contact(stiffness, shown, tmp_pa
         start = f"motion.start={height} nm"
         higher = sa.load_experiment(path, [f"cantilever.stiffness={stiffness}", start])
         assert audit_of(higher.run())["passed"]
+
+
+def test_an_attraction_behind_a_barrier_that_outweighs_it_is_audited_too():
+    """Such a law has no work of adhesion; the slow sample is drawn after the tip all the same."""
+    law = sa.DLVO(2.6e-22, 0.255e-9, 0.03, 8.3e-9)
+    assert law.work_of_adhesion < 0
+    contact = sa.Contact(sa.Hyperboloid(14e-9, 1.0), sa.KelvinVoigt(29e3, 3.3, 0.25), law)
+    ramp = sa.Triangle(38e-9, -70e-9, 2.4e-9, dwell=5.0)
+    with pytest.warns(sa.AccuracyWarning, match="still in contact at the end"):
+        result = sa.force_distance(contact, ramp)
+    assert float(result["force"][-1]) < 0

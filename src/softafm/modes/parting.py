@@ -35,12 +35,14 @@ def estimate_parting_height(
 
 
 def estimate_work_at_speed(contact: "Contact", speed: float) -> float:
-    """Return the work of adhesion, J/m², that parting at a speed, m/s, takes, about.
+    """Return the work of adhesion, J/m², that parting at a speed, m/s, takes, about; 0 of none.
 
     The edge of a contact that opens faster than its cohesive zone creeps takes more, at most in the
     ratio of the moduli: about the root of that in which the sample is stiffer at the time in which
     the edge crosses the zone (Persson and Brener 2005, Physical Review E 71, 036123).
     """
+    if not contact.adhesive:
+        return 0.0
     creep, work = contact.body.compliance, contact.surface.work_of_adhesion
     modulus, R = contact.softened_modulus, contact.effective_radius
     zone = modulus * contact.surface.range**2 / work
