@@ -131,7 +131,7 @@ SMALLEST_FRAME = 0.5
 TRACE_FROM = 0.2
 """Move of the edge in a step, in edge spacings, from which the memory rides with it."""
 
-SLACKER = 10.0
+SLACKER = 7.0
 """Tabor number of the softened sample from which on that pays: such a step costs 15 others."""
 
 FIRST_PANEL, NEXT_PANEL = 0.8, 2.2
@@ -177,7 +177,7 @@ APEX, FINEST_GROWTH = 2.5, 0.6
 a tip sharper than a paraboloid gets, down to the second (the pull-off of a cone pressed to nine
 times its apex was 4.8 % off)."""
 
-SLACK = 6.0
+SLACK = 4.0
 """Tabor number of the softened sample from which on the edge of a contact yields to small errors,
 so that it is solved for together with the surface."""
 
