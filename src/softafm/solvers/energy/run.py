@@ -95,7 +95,7 @@ class Run:
             newton=self.surface.accuracy,
             slack=LAG,
             held=0.0,
-            cover=0.0 if contact.adhesive else COVER,
+            cover=0.0 if contact.pulled else COVER,
             least_frame=self.surface.open_frame if self.surface.rimmed else 0.0,
             finest=0.0,
             coarsest=0.0,
@@ -342,7 +342,7 @@ class Run:
         end = stop if duration == stop - start else start + duration
         self.end_of_slip = start + SLIPS_AGAIN * duration
         record = None
-        if self.contact.adhesive and self.slips == 0:
+        if self.contact.pulled and self.slips == 0:
             record = land(surface, end, before, touching=edge > 0)
         if record is None:
             creep_down(self, end, duration)

@@ -101,13 +101,13 @@ class Surface:
         law_parameters[ORIGIN] = origin
         self.edge_gap = contact.edge_gap - origin
         # Where the cohesive zone ends: of a Lennard-Jones law the gap is twice that at the edge.
-        opens = 3 ** (1 / 6) * contact.reach if contact.adhesive else self.edge_gap
+        opens = 3 ** (1 / 6) * contact.reach if contact.pulled else self.edge_gap
         self.open_gap = self.edge_gap + opens
         self.open_frame = contact.open_radius
         # Loose steps cost accuracy, a coarse mesh catches the edge: loops would be 15 % off.
         at_least = min(strictness, 1.0)
         self.accuracy = EQUILIBRIUM_ERROR * at_least
-        sharpness = contact.surface.sharpness if contact.adhesive else 1.0
+        sharpness = contact.surface.sharpness if contact.pulled else 1.0
         finer = at_least**0.25
         self.target = SPACING * finer / max(1.0, sharpness)
         self.growth = GROWTH * finer * find_fineness(contact, motion)
@@ -125,7 +125,7 @@ class Surface:
         # Where the tip rises steeply, at the rim of a punch, it holds the edge; and a sample that
         # is all memory parts evenly, without an edge.
         free = not contact.steep and find_softening(self.parameters, period) < FAR_SOFTER
-        tabor = contact.tabor_after(period) if free and contact.adhesive else 0.0
+        tabor = contact.tabor_after(period) if free and contact.pulled else 0.0
         slack = tabor > SLACK
         self.ride_from = RIDE_FROM * self.open_frame if slack else inf
         # What a steady cycle gathers is filtered at fixed radii, and a trace knows one stiffness.
