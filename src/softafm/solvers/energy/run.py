@@ -31,6 +31,7 @@ from softafm.solvers.energy.layout import (
     TABULATE,
     TRIGGERED,
     Controls,
+    no_swing,
 )
 from softafm.solvers.energy.steadiness import Steadiness
 from softafm.solvers.energy.step import advance
@@ -56,6 +57,7 @@ from softafm.solvers.periodic import PeriodicMemory
 from softafm.solvers.shapes import Shape, interpolate_to_common_radii
 
 _advance = enter(advance)
+_NO_SWING, _NO_STROKES, _NO_TURNS = no_swing(), np.empty((0, 3)), np.empty(0)
 _CHUNK = 256
 """Records that one call of the compiled loop may fill."""
 
@@ -279,7 +281,7 @@ class Run:
             *surface.functions[:-1], surface.parameters, surface.background, surface.mesh,
             surface.table, controls, surface.fields, surface.clock, surface.lever_state,
             surface.lag_energy, records, shapes, surface.room(),
-            np.empty(surface.mesh.nodes.size + 2, np.int64),
+            np.empty(surface.mesh.nodes.size + 2, np.int64), _NO_SWING, _NO_STROKES, _NO_TURNS,
         )  # fmt: skip
         if outcome == TABULATE:
             surface.tabulate(float(surface.clock["wanted"]))
@@ -328,14 +330,15 @@ class Run:
         duration = min(2.0**self.slips * self.controls.shortest_step, stop - start)
         end = stop if duration == stop - start else start + duration
         self.end_of_slip = start + SLIPS_AGAIN * duration
+        surface.functions.accept_force(
+            end, duration, force, force, surface.parameters.lever, surface.lever_state
+        )
+        surface.let_pass(end)
         record = None
         if self.contact.adhesive and self.slips == 0:
             record = land(surface, end, before, touching=edge > 0)
         if record is None:
             creep_down(self, end, duration)
-        surface.functions.accept_force(
-            end, duration, force, force, surface.parameters.lever, surface.lever_state
-        )
         clock["time"], clock["step"] = end, 10 * self.controls.shortest_step
         self._settle() if record is None else self._note(record)
         self.falls.append(self.count - 1)

@@ -201,6 +201,12 @@ class Surface:
         """Whether the lever follows a force at once."""
         return self.lever.stiffness < inf
 
+    def let_pass(self, time: float) -> None:
+        """Let a lever that knows its deflection at a time, s, have it: one with inertia."""
+        deflection_at = getattr(self.lever, "deflection_at", None)
+        if deflection_at is not None:
+            self.clock["deflection"] = deflection_at(time, self.lever_state)
+
     def mount(self, lever: Lever, state: np.ndarray) -> None:
         """Let another lever carry the tip, one that remembers ``state``, bent as it is now."""
         respond, accept_force, parameters = lever.compiled_response
@@ -249,7 +255,9 @@ class Surface:
         mesh, stretch = self.build_mesh(self.level), self.open_frame / self.clock["frame"]
         self.fields = self._carry(self.fields, mesh, stretch)
         self.lay(mesh)
-        self.clock["frame"], self.clock["deflection"] = self.open_frame, 0.0
+        self.clock["frame"] = self.open_frame
+        if self.bends:
+            self.clock["deflection"] = 0.0
         self.fields[DEFORMATION] = -self.parameters.compliance[1:] @ self.memory()
 
     def keep(self) -> tuple[Any, ...]:

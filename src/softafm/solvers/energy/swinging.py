@@ -1,0 +1,195 @@
+"""One run of the energy solver with a lever that has inertia: cycle after cycle."""
+
+from collections.abc import Iterator
+from typing import Any
+
+import numpy as np
+
+from softafm.compiled.functions import enter
+from softafm.errors import DivergedError
+from softafm.instrument.motion import Motion
+from softafm.instrument.motions import Sine
+from softafm.instrument.resonator import Resonator
+from softafm.solvers.energy.doubts import suggest_longer_range
+from softafm.solvers.energy.layout import (
+    FALL,
+    RECORD_FIELDS,
+    REMESH,
+    STUCK,
+    TABULATE,
+    Swing,
+)
+from softafm.solvers.energy.run import Run
+from softafm.solvers.energy.tuning import (
+    FEWEST_STEPS,
+    FIRST_STEP,
+    FLIES_FROM,
+    REMEMBERED,
+    TAKEN_OVER,
+)
+from softafm.solvers.energy.watch import (
+    AT,
+    BASE,
+    DAMPING,
+    LARGEST,
+    MODES,
+    PUSH,
+    SMALLEST,
+    TIME,
+    TIME_EARLIER,
+    advance_cycles,
+    watch,
+)
+
+_advance_cycles = enter(advance_cycles)
+_NO_SHAPES = np.empty((0, 0))
+_ROWS = 1024
+"""Records that one call of the compiled loop may fill."""
+_CHUNK = 16
+"""Cycles that it may take, so that an interrupt is heard."""
+_HEIGHTS = np.geomspace(1.0, 1e6, 1200)
+"""Where the pull on a rigid surface is known, in the lowest such height."""
+HARMONICS = 10
+"""Harmonics of the first drive that are observed."""
+
+
+class Swinging(Run):
+    """Carries surface and lever from cycle to cycle of the first drive.
+
+    The mesh and the steps are those of a prescribed tap like it, ``likeness``.
+    """
+
+    def __init__(
+        self,
+        solver: Any,
+        contact: Any,
+        lever: Resonator,
+        base: Motion,
+        likeness: Sine,
+        tolerance: float,
+    ):
+        super().__init__(solver, contact, likeness, lever, tolerance, keep_shapes=False)
+        self.resonator, self.base = lever, base
+        surface = self.surface
+        height, parameters = base.compiled_height
+        surface.functions = surface.functions._replace(height=height)
+        surface.parameters = surface.parameters._replace(height=parameters)
+        surface.clock["grip"] = np.inf
+        period = 1 / likeness.frequency
+        fastest = max(mode.frequency for mode in lever.modes)
+        self.controls = self.controls._replace(
+            longest_step=self.strictness**0.25 / (FEWEST_STEPS * fastest),
+            top_speed=base.top_speed,
+        )
+        far = FLIES_FROM * surface.edge_gap
+        heights = TAKEN_OVER * far * _HEIGHTS
+        self.swing = Swing(
+            contact.rigid_force(heights) * heights**2, float(np.log(heights[0])),
+            float(np.log(_HEIGHTS[1])), far, REMEMBERED * period, float(contact.force_scale),
+        )  # fmt: skip
+        modes, filters = len(lever.modes), len(lever.list_filters())
+        omegas = [2 * np.pi * drive.frequency for drive in lever.drives]
+        self.tuned = np.array(omegas)
+        self.drag = np.array(
+            [m.stiffness / (2 * np.pi * m.frequency * m.quality_factor) for m in lever.modes]
+        )
+        self.turns = np.empty(8 * filters)
+        self.last = np.zeros(MODES + 2 * modes)
+        spectrum = 2 * (HARMONICS + len(omegas) - 1)
+        self.sums = np.zeros(DAMPING + modes + spectrum)
+        self.turning = np.zeros((4, spectrum))
+        self.records = np.empty(_ROWS, RECORD_FIELDS)
+        self.strokes = np.empty((_ROWS, 3 + 2 * modes))
+        self.kept: list[tuple[np.ndarray, np.ndarray]] | None = None
+
+    def begin(self) -> None:
+        """Settle the surface under the tip at the start, and begin the first cycle."""
+        surface = self.surface
+        surface.let_pass(surface.time)
+        self._settle()
+        if surface.clock["edge"] > 0:
+            self._fall_at_start()
+        surface.clock["history"] = 1
+        surface.clock["step"] = FIRST_STEP / max(m.frequency for m in self.resonator.modes)
+        motion = self.resonator.measure(surface.time, surface.lever_state)
+        self.last[TIME] = self.last[TIME_EARLIER] = surface.time
+        self.last[PUSH], self.last[AT] = surface.clock["force"], motion[0]
+        self.last[BASE] = self.base.height(surface.time)
+        self.last[MODES:] = motion[1:]
+        turns = np.concatenate(
+            [self.tuned[0] * np.arange(1, HARMONICS + 1), self.tuned[1:]]
+        )
+        turned = np.exp(-1j * turns * surface.time)
+        self.turning[0, ::2], self.turning[1, ::2] = turned.real, turned.imag
+        self.sums[:] = 0.0
+        self.sums[LARGEST], self.sums[SMALLEST] = -np.inf, np.inf
+
+    def pass_through(self, ends: np.ndarray, found: np.ndarray) -> Iterator[int]:
+        """Run to the ``ends`` of cycles, s; a row of ``found`` gets what is observed of each.
+
+        Yields the number of cycles done, now and then.
+        """
+        surface, done = self.surface, 0
+        while done < ends.size:
+            surface.target = self.target
+            stop = min(done + _CHUNK, ends.size)
+            while done < stop:
+                outcome, records, more = self._advance_cycles(ends[done:stop], found[done:stop])
+                done += more
+                if outcome == STUCK:
+                    advice = suggest_longer_range(self.contact)
+                    raise DivergedError(
+                        f"stopped at t = {surface.time:g} s after "
+                        f"{surface.clock['tries']:.0f} attempted steps in a cycle "
+                        f"(most_steps = {self.solver.most_steps}){advice}"
+                    )
+                if outcome == REMESH:
+                    surface.remesh(records[-1]["coarseness"])
+                if outcome == FALL:
+                    self._fall(float(ends[done]))
+                if outcome == TABULATE:
+                    surface.tabulate(float(surface.clock["wanted"]))
+                yield done
+
+    def _advance_cycles(self, ends: np.ndarray, found: np.ndarray) -> tuple[int, np.ndarray, int]:
+        """Call the compiled loop once; return its outcome, records and the cycles it has ended."""
+        surface = self.surface
+        finest, coarsest = surface.coarseness_allowed
+        controls = self.controls._replace(
+            end=0.0, finest=finest, coarsest=coarsest, held=surface.spacing_held
+        )
+        outcome, count, done = _advance_cycles(
+            ends, found, self.last, self.sums, self.tuned, self.drag, HARMONICS, self.turning,
+            *surface.functions[:-1], surface.parameters, surface.background, surface.mesh,
+            surface.table, controls, surface.fields, surface.clock, surface.lever_state,
+            surface.lag_energy, self.records, _NO_SHAPES, surface.room(),
+            np.empty(surface.mesh.nodes.size + 2, np.int64), self.swing, self.strokes, self.turns,
+        )  # fmt: skip
+        self._keep_rows(count)
+        return outcome, self.records[:count], done
+
+    def _keep_rows(self, count: int) -> None:
+        if self.kept is not None and count:
+            self.kept.append((self.records[:count].copy(), self.strokes[:count].copy()))
+
+    def _fall(self, stop: float) -> None:
+        self.count = 0
+        force = float(self.surface.clock["force"])
+        super()._fall(stop)
+        surface = self.surface
+        row = self.strokes[0]
+        row[0], row[1] = force, 0.0
+        row[2:] = self.resonator.measure(surface.time, surface.lever_state)
+        self._keep_rows(1)
+        after = self.records[0]["force"]
+        self.records[0]["force"] = force  # until the fall
+        watch(
+            self.records, self.strokes, 1, self.last, self.sums, self.tuned, self.drag, HARMONICS,
+            self.turning,
+        )  # fmt: skip
+        self.records[0]["force"] = after
+        surface.clock["grip"], surface.clock["bend"] = np.inf, 0.0
+
+    def _free_records(self) -> np.ndarray:
+        return self.records[self.count :]
+
