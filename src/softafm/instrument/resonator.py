@@ -12,6 +12,7 @@ sum of tones, known beforehand. In the limit of short periods this is a spring i
 from cmath import sqrt
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from math import inf, pi
 from typing import Any
 
@@ -103,7 +104,7 @@ class Resonator:
             tones += [(omega, each.real, each.imag, i) for i, each in enumerate(swings)]
         return np.array(tones).reshape(-1, 4)
 
-    @property
+    @cached_property
     def compiled_response(self) -> tuple[Any, Any, np.ndarray]:
         from softafm.instrument.compiled_oscillators import swing, swing_on
 

@@ -112,6 +112,7 @@ class Run:
         self.shapes: list[Shape] | None = [] if keep_shapes else None
         self.coarsest = 0.0, 0.0
         self.slips, self.end_of_slip = 0, -np.inf
+        self.lands, self.creeps = contact.adhesive, True
         self.cycle, self.unsteady = 1, 0.0
         self.steadiness = Steadiness(self.strictness)
         self.falls: list[int] = []  # the records that they led to
@@ -335,9 +336,9 @@ class Run:
         )
         surface.let_pass(end)
         record = None
-        if self.contact.adhesive and self.slips == 0:
+        if self.lands and self.slips == 0:
             record = land(surface, end, before, touching=edge > 0)
-        if record is None:
+        if record is None and self.creeps:
             creep_down(self, end, duration)
         clock["time"], clock["step"] = end, 10 * self.controls.shortest_step
         self._settle() if record is None else self._note(record)

@@ -35,6 +35,7 @@ from softafm.solvers.energy.watch import (
     MODES,
     PUSH,
     SMALLEST,
+    SPEED,
     TIME,
     TIME_EARLIER,
     advance_cycles,
@@ -47,7 +48,7 @@ _ROWS = 1024
 """Records that one call of the compiled loop may fill."""
 _CHUNK = 16
 """Cycles that it may take, so that an interrupt is heard."""
-_HEIGHTS = np.geomspace(1.0, 1e6, 1200)
+_HEIGHTS = np.geomspace(1.0, 1e5, 500)
 """Where the pull on a rigid surface is known, in the lowest such height."""
 HARMONICS = 10
 """Harmonics of the first drive that are observed."""
@@ -75,6 +76,8 @@ class Swinging(Run):
         surface.functions = surface.functions._replace(height=height)
         surface.parameters = surface.parameters._replace(height=parameters)
         surface.clock["grip"] = np.inf
+        # Contacts that are not slack fall a short way, which a creep finds at once.
+        self.lands = self.creeps = surface.ride_from < np.inf
         period = 1 / likeness.frequency
         fastest = max(mode.frequency for mode in lever.modes)
         self.controls = self.controls._replace(
@@ -116,6 +119,7 @@ class Swinging(Run):
         self.last[PUSH], self.last[AT] = surface.clock["force"], motion[0]
         self.last[BASE] = self.base.height(surface.time)
         self.last[MODES:] = motion[1:]
+        self.last[SPEED] = motion[1 + len(self.drag) :].sum()
         turns = np.concatenate(
             [self.tuned[0] * np.arange(1, HARMONICS + 1), self.tuned[1:]]
         )

@@ -260,7 +260,7 @@ FLIGHT_ANGLE, FLIGHT_PART = 0.35, 0.2
 """Longest step of a flight, in radians of the fastest mode, and in times to the surface: exact but
 for the change of a weak force."""
 
-LANDED = 0.02
+LANDED = 0.06
 """First step after a flight, in times to the surface."""
 
 LATE = 0.015

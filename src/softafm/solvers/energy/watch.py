@@ -46,7 +46,9 @@ FORCE, VIRIAL, WORK, BASE_WORK, DEFLECTION, LOST, JUMPED, LARGEST, SMALLEST, TRI
     11
 )
 # Entries of `last`, the row before; then deflections and speeds of the modes.
-TIME, PUSH, AT, BASE, STEP, PUSH_EARLIER, TIME_EARLIER, MODES = range(8)
+TIME, PUSH, AT, SPEED, BASE, STEP, PUSH_EARLIER, TIME_EARLIER, AT_EARLIER, SPEED_EARLIER, MODES = range(
+    11
+)
 
 
 @inline
@@ -76,18 +78,18 @@ def watch(records, strokes, count, last, sums, tuned, drag, harmonics, turning):
     for i in range(count):
         record, stroke = records[i], strokes[i]
         step, f0, f1, q0, q1 = record.time - last[TIME], stroke[0], record.force, last[AT], stroke[2]
-        v0 = v1 = 0.0
+        v0, v1 = last[SPEED], 0.0
         for k in range(modes):
-            v0 += last[MODES + modes + k]
             v1 += stroke[3 + modes + k]
         base, rise = record.height - q1, f1 - f0
         area = 0.5 * (q0 + q1) + step * (v0 - v1) / 12.0
         late = -stroke[1] * last[STEP] ** 3 / 12.0
         sums[FORCE] += 0.5 * step * (f0 + f1) + late
-        sums[VIRIAL] += late * q0 + step * (
+        sums[VIRIAL] += late * 0.5 * (last[AT_EARLIER] + q0) + step * (
             f0 * area + rise * (0.15 * q0 + 0.35 * q1 + step * (v0 / 30.0 - v1 / 20.0))
         )
-        sums[WORK] -= f1 * q1 - f0 * q0 - rise * area + late * v0
+        sums[WORK] -= f1 * q1 - f0 * q0 - rise * area
+        sums[WORK] -= late * 0.5 * (last[SPEED_EARLIER] + v0)
         sums[BASE_WORK] -= 0.5 * (f0 + f1) * (base - last[BASE])
         sums[DEFLECTION] += step * area
         sums[LOST] += record.lost
@@ -123,7 +125,8 @@ def watch(records, strokes, count, last, sums, tuned, drag, harmonics, turning):
                 turning[2, col], turning[3, col] = middle.real, middle.imag
                 at += 2
         last[TIME_EARLIER], last[PUSH_EARLIER] = last[TIME], f0
-        last[TIME], last[PUSH], last[AT] = record.time, f1, q1
+        last[AT_EARLIER], last[SPEED_EARLIER] = q0, v0
+        last[TIME], last[PUSH], last[AT], last[SPEED] = record.time, f1, q1, v1
         last[BASE], last[STEP] = base, step
 
 
