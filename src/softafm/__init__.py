@@ -13,12 +13,14 @@ from softafm.draw.storyboard import plot_profiles
 from softafm.draw.tip import plot_tip
 from softafm.errors import AccuracyWarning, DivergedError, DoubtfulValueWarning
 from softafm.files.measured import read_trajectory
-from softafm.instrument.cantilever import Cantilever
+from softafm.instrument.cantilever import Cantilever, Eigenmode
+from softafm.instrument.drive import Drive
 from softafm.instrument.motions import Sine, Trajectory, Triangle
 from softafm.modes.approach import approach_curve
 from softafm.modes.force_distance import force_distance
 from softafm.modes.spectroscopy import force_spectroscopy
 from softafm.modes.tapping import tapping_cycle
+from softafm.modes.transient import tapping_transient
 from softafm.results.datasets import export, load, save
 from softafm.rheology import (
     Elastic,
@@ -88,7 +90,9 @@ __all__ = [
     "CustomTip",
     "DivergedError",
     "DoubtfulValueWarning",
+    "Drive",
     "Dugdale",
+    "Eigenmode",
     "Elastic",
     "Exponential",
     "FlatPunch",
@@ -150,6 +154,7 @@ __all__ = [
     "solvers",
     "sweep",
     "tapping_cycle",
+    "tapping_transient",
 ]
 
 _LATER = {

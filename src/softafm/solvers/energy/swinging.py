@@ -6,11 +6,12 @@ from typing import Any
 import numpy as np
 
 from softafm.compiled.functions import enter
-from softafm.errors import DivergedError
+from softafm.errors import AccuracyWarning, DivergedError
 from softafm.instrument.motion import Motion
 from softafm.instrument.motions import Sine
 from softafm.instrument.resonator import Resonator
-from softafm.solvers.energy.doubts import suggest_longer_range
+from softafm.solvers.energy.cycles import HARMONICS, observe_cycles
+from softafm.solvers.energy.doubts import list_doubts, suggest_longer_range
 from softafm.solvers.energy.layout import (
     FALL,
     RECORD_FIELDS,
@@ -38,6 +39,7 @@ from softafm.solvers.energy.watch import (
     SPEED,
     TIME,
     TIME_EARLIER,
+    TRIES,
     advance_cycles,
     watch,
 )
@@ -50,8 +52,6 @@ _CHUNK = 16
 """Cycles that it may take, so that an interrupt is heard."""
 _HEIGHTS = np.geomspace(1.0, 1e5, 500)
 """Where the pull on a rigid surface is known, in the lowest such height."""
-HARMONICS = 10
-"""Harmonics of the first drive that are observed."""
 
 
 class Swinging(Run):
@@ -104,6 +104,7 @@ class Swinging(Run):
         self.records = np.empty(_ROWS, RECORD_FIELDS)
         self.strokes = np.empty((_ROWS, 3 + 2 * modes))
         self.kept: list[tuple[np.ndarray, np.ndarray]] | None = None
+        self.done = 0
 
     def begin(self) -> None:
         """Settle the surface under the tip at the start, and begin the first cycle."""
@@ -127,6 +128,49 @@ class Swinging(Run):
         self.turning[0, ::2], self.turning[1, ::2] = turned.real, turned.imag
         self.sums[:] = 0.0
         self.sums[LARGEST], self.sums[SMALLEST] = -np.inf, np.inf
+
+    def pass_cycles(self, ends: np.ndarray, kept: int) -> Iterator[int]:
+        """Run to the ``ends`` of cycles, s, and keep the curves of those from ``kept`` on.
+
+        Yields the number of cycles done, now and then; ``done`` says it, too.
+        """
+        self.times = np.append(self.surface.time, ends)
+        self.found = np.empty((ends.size, self.sums.size + self.surface.lever_state.size))
+        self.at_start = self.surface.lever_state.copy()
+        self.begin()
+        for first, last in ((0, kept), (kept, ends.size)):
+            if first == kept and kept < ends.size:
+                self.kept = []
+            for done in self.pass_through(ends[first:last], self.found[first:last]):
+                self.done = first + done
+                yield self.done
+
+    def observe(self) -> dict[str, np.ndarray]:
+        """Return the observables of all cycles done, by name."""
+        found = self.found[: self.done]
+        states = np.vstack([self.at_start, found[:, self.sums.size :]])
+        times, sums = self.times[: self.done + 1], found[:, : self.sums.size]
+        return observe_cycles(self.resonator, times, states, sums)
+
+    def list_doubts(self) -> tuple[AccuracyWarning, ...]:
+        """Return the warnings that a finished run deserves."""
+        self.count = 0
+        return list_doubts(self)
+
+    @property
+    def tries(self) -> int:
+        """Steps attempted in the cycles done."""
+        return int(self.found[: self.done, TRIES].sum())
+
+    def collect_curves(self) -> dict[str, np.ndarray] | None:
+        """Return what was kept over time, by name; None if nothing was."""
+        if not self.kept:
+            return None
+        records, strokes = (np.concatenate(each) for each in zip(*self.kept, strict=True))
+        names = {"tip_height": "height", "force": "force", "contact_radius": "edge"}
+        names |= {"axis_deformation": "axis", "viscous_power": "loss", "time": "time"}
+        curves = {name: records[key] for name, key in names.items()}
+        return curves | {"deflection": strokes[:, 2]}
 
     def pass_through(self, ends: np.ndarray, found: np.ndarray) -> Iterator[int]:
         """Run to the ``ends`` of cycles, s; a row of ``found`` gets what is observed of each.
@@ -170,6 +214,9 @@ class Swinging(Run):
             np.empty(surface.mesh.nodes.size + 2, np.int64), self.swing, self.strokes, self.turns,
         )  # fmt: skip
         self._keep_rows(count)
+        if surface.level == surface.finest_level and count:
+            worst = self.records[self.records["coarseness"][:count].argmax()]
+            self.coarsest = max(self.coarsest, (float(worst["coarseness"]), float(worst["edge"])))
         return outcome, self.records[:count], done
 
     def _keep_rows(self, count: int) -> None:
@@ -193,6 +240,7 @@ class Swinging(Run):
         )  # fmt: skip
         self.records[0]["force"] = after
         surface.clock["grip"], surface.clock["bend"] = np.inf, 0.0
+        self.gained = 0.0  # told by the balance of energy
 
     def _free_records(self) -> np.ndarray:
         return self.records[self.count :]
