@@ -125,24 +125,39 @@ def find_fastest(parameters):
     return fastest
 
 
-@compile_for((float64, _VECTOR, _VECTOR, _VECTOR))
-def measure_motion(time, parameters, state, motion):
-    """Write the deflection, then those of the modes, m, and their speeds, m/s, into ``motion``."""
-    at, modes = FILTERS, motion.size // 2
+@inline
+def begin_motion(time, parameters, motion):
+    """Write the deflection that drives cause, then those of the modes, m, and their speeds, m/s."""
+    at, modes = FILTERS + FILTER * int(parameters[0]), motion.size // 2
     for i in range(motion.size):
         motion[i] = 0.0
-    for j in range(int(parameters[0])):
-        rate = complex(parameters[at], parameters[at + 1])
-        z = complex(parameters[at + 2], parameters[at + 3]) * complex(state[2 * j], state[2 * j + 1])
-        i = 1 + int(parameters[at + 4])
-        motion[i] += z.real
-        motion[i + modes] += rate.real * z.real - rate.imag * z.imag
-        at += FILTER
     for _ in range(int(parameters[1])):
         omega, i = parameters[at], 1 + int(parameters[at + 3])
         c, s = cos(omega * time), sin(omega * time)
-        motion[i] += parameters[at + 1] * c - parameters[at + 2] * s
+        deflection = parameters[at + 1] * c - parameters[at + 2] * s
+        motion[0] += deflection
+        motion[i] += deflection
         motion[i + modes] -= omega * (parameters[at + 1] * s + parameters[at + 2] * c)
         at += TONE
-    for i in range(modes):
-        motion[0] += motion[1 + i]
+
+
+@inline
+def add_filters(parameters, state, motion):
+    """Add what the filters do to what ``begin_motion`` wrote."""
+    at, modes = FILTERS, motion.size // 2
+    for j in range(int(parameters[0])):
+        rate = complex(parameters[at], parameters[at + 1])
+        z = complex(state[2 * j], state[2 * j + 1])
+        z *= complex(parameters[at + 2], parameters[at + 3])
+        i = 1 + int(parameters[at + 4])
+        motion[0] += z.real
+        motion[i] += z.real
+        motion[i + modes] += rate.real * z.real - rate.imag * z.imag
+        at += FILTER
+
+
+@compile_for((float64, _VECTOR, _VECTOR, _VECTOR))
+def measure_motion(time, parameters, state, motion):
+    """Write the deflection, then those of the modes, m, and their speeds, m/s, into ``motion``."""
+    begin_motion(time, parameters, motion)
+    add_filters(parameters, state, motion)

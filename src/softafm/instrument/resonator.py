@@ -1,6 +1,6 @@
 """A lever with inertia: its eigenmodes, and what drives them.
 
-Each eigenmode obeys m q̈ + (mω/Q) q̇ + k q = F(t) + D(t), m = k/ω², F being the force on the tip. With
+Each eigenmode obeys m q̈ + (mω/Q) q̇ + k q = F(t) + D(t), m = k/ω², with F the force on the tip. With
 λ = −ω/2Q ± iω_d, ω_d = ω √(1 − 1/4Q²), what the tip's force does is exactly one complex memory,
 
     r = Im z/(m ω_d),     ż = λ z + F,
@@ -87,7 +87,7 @@ class Resonator:
         return each * drive.free_amplitude / moved
 
     def find_shaking(self, drive: Drive) -> float:
-        """Amplitude with which a drive shakes the base, m, in phase with its force; 0 by the tip."""
+        """Amplitude of the base that a drive shakes, m, in phase with its force; 0 by the tip."""
         if drive.by == "tip":
             return 0.0
         first = self.modes[0]

@@ -264,9 +264,7 @@ def _describe(base: Any) -> Any:
     return describe(base)
 
 
-def _doubt_balance(
-    values: dict[str, np.ndarray], tolerance: float
-) -> tuple[AccuracyWarning, ...]:
+def _doubt_balance(values: dict[str, np.ndarray], tolerance: float) -> tuple[AccuracyWarning, ...]:
     """Return what to warn of where the sample takes another energy than the tip loses."""
     taken = values["viscous_loss"] + values["jump_loss"]
     fed = np.abs(values["drive_work"]).max()

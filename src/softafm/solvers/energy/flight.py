@@ -7,17 +7,18 @@ back; ``clock.flown`` tells for how long.
 
 from math import ceil, exp, inf, log, pi
 
-from numba import boolean, float64, int64
+from numba import boolean, int64
 
 from softafm.compiled.functions import HEIGHT, INTERNAL, compile_for, inline, pointer_to
 from softafm.instrument.compiled_oscillators import (
     FILTER,
     FILTERS,
+    add_filters,
+    begin_motion,
     bound_speed,
     find_fastest,
     find_moments,
     measure_motion,
-    respond_to_drive,
 )
 from softafm.solvers.energy.layout import (
     CLOCK,
@@ -37,6 +38,7 @@ from softafm.solvers.energy.layout import (
 from softafm.solvers.energy.memory import DECAY, carry_lag_energy
 from softafm.solvers.energy.proposal import furnish
 from softafm.solvers.energy.tuning import (
+    ALMOST,
     FLIGHT_ANGLE,
     FLIGHT_PART,
     HARDLY_SAGS,
@@ -132,8 +134,9 @@ def fly(
         if not abs(step - known) < 1e-11 * known:
             known, gives = step, _weigh(lever, filters, step, weights)
         end = controls.end if step == left else clock.time + step
-        flown, before = clock.flown + step, clock.force
-        rest = respond_to_drive(end, lever)
+        flown, before, stroke = clock.flown + step, clock.force, strokes[count]
+        begin_motion(end, lever, stroke[2:])
+        rest = stroke[2]
         for j in range(filters):
             real, imag = lever_state[2 * j], lever_state[2 * j + 1]
             row, at = weights[8 * j : 8 * j + 8], FILTERS + FILTER * j
@@ -143,10 +146,13 @@ def fly(
         base, force = height(end, parameters.height), before
         lift = find_lift(parameters, fields, flown)
         for _ in range(2):
-            above = base + rest + gives * force - lift
+            guessed, above = force, base + rest + gives * force - lift
             gap = above - parameters.law[ORIGIN]
-            if gap > TAKEN_OVER * swing.far:
-                force = find_pull(above, swing)
+            if not gap > TAKEN_OVER * swing.far:
+                break
+            force = find_pull(above, swing)
+            if abs(gives * (force - guessed)) < ALMOST * gap:
+                break
         comes = gap < swing.far and gap < clock.axis_gap
         if comes or not gap > TAKEN_OVER * swing.far:
             break
@@ -154,9 +160,9 @@ def fly(
             row = weights[8 * j : 8 * j + 8]
             lever_state[2 * j] = row[6] + row[4] * force
             lever_state[2 * j + 1] = row[7] + row[5] * force
-        record, stroke = records[count], strokes[count]
+        record = records[count]
         stroke[0], stroke[1] = before, 0.0
-        measure_motion(end, lever, lever_state, stroke[2:])
+        add_filters(lever, lever_state, stroke[2:])
         clock.deflection, clock.force, clock.axis_gap = stroke[2], force, gap
         clock.time, clock.flown = end, flown
         record.time, record.height, record.force = end, base + stroke[2], force
@@ -164,12 +170,14 @@ def fly(
         record.frame, record.jump = clock.frame, 0.0
         record.loss, record.lost = 0.0, 0.0
         for m in range(elements):
-            energy = 2.0 * pi * parameters.compliance[m + 1] * lag_energy[m]
-            now = exp(-2.0 * flown / parameters.retardation[m])
-            then = exp(-2.0 * (flown - step) / parameters.retardation[m])
-            record.loss += 2.0 * energy / parameters.retardation[m] * now
-            record.lost += energy * (then - now)
-        clock.force_scale = max(clock.force_scale * exp(-step / swing.fading), swing.least, -force)
+            if lag_energy[m] > 0.0:
+                energy = 2.0 * pi * parameters.compliance[m + 1] * lag_energy[m]
+                now = exp(-2.0 * flown / parameters.retardation[m])
+                then = exp(-2.0 * (flown - step) / parameters.retardation[m])
+                record.loss += 2.0 * energy / parameters.retardation[m] * now
+                record.lost += energy * (then - now)
+        fading = clock.force_scale / (1.0 + step / swing.fading)
+        clock.force_scale = max(fading, swing.least, -force)
         count += 1
     if count > first:
         speed = controls.top_speed + bound_speed(lever, lever_state)

@@ -22,6 +22,7 @@ from softafm.solvers.energy.layout import (
 )
 from softafm.solvers.energy.run import Run
 from softafm.solvers.energy.tuning import (
+    FAINT,
     FEWEST_STEPS,
     FIRST_STEP,
     FLIES_FROM,
@@ -96,6 +97,7 @@ class Swinging(Run):
         self.drag = np.array(
             [m.stiffness / (2 * np.pi * m.frequency * m.quality_factor) for m in lever.modes]
         )
+        self.faint = FAINT * float(contact.force_scale)
         self.turns = np.empty(8 * filters)
         self.last = np.zeros(MODES + 2 * modes)
         spectrum = 2 * (HARMONICS + len(omegas) - 1)
@@ -121,9 +123,7 @@ class Swinging(Run):
         self.last[BASE] = self.base.height(surface.time)
         self.last[MODES:] = motion[1:]
         self.last[SPEED] = motion[1 + len(self.drag) :].sum()
-        turns = np.concatenate(
-            [self.tuned[0] * np.arange(1, HARMONICS + 1), self.tuned[1:]]
-        )
+        turns = np.concatenate([self.tuned[0] * np.arange(1, HARMONICS + 1), self.tuned[1:]])
         turned = np.exp(-1j * turns * surface.time)
         self.turning[0, ::2], self.turning[1, ::2] = turned.real, turned.imag
         self.sums[:] = 0.0
@@ -207,7 +207,8 @@ class Swinging(Run):
             end=0.0, finest=finest, coarsest=coarsest, held=surface.spacing_held
         )
         outcome, count, done = _advance_cycles(
-            ends, found, self.last, self.sums, self.tuned, self.drag, HARMONICS, self.turning,
+            ends, found, self.last, self.sums, self.tuned, self.drag, HARMONICS, self.faint,
+            self.turning,
             *surface.functions[:-1], surface.parameters, surface.background, surface.mesh,
             surface.table, controls, surface.fields, surface.clock, surface.lever_state,
             surface.lag_energy, self.records, _NO_SHAPES, surface.room(),
@@ -236,7 +237,7 @@ class Swinging(Run):
         self.records[0]["force"] = force  # until the fall
         watch(
             self.records, self.strokes, 1, self.last, self.sums, self.tuned, self.drag, HARMONICS,
-            self.turning,
+            self.faint, self.turning,
         )  # fmt: skip
         self.records[0]["force"] = after
         surface.clock["grip"], surface.clock["bend"] = np.inf, 0.0
@@ -244,4 +245,3 @@ class Swinging(Run):
 
     def _free_records(self) -> np.ndarray:
         return self.records[self.count :]
-

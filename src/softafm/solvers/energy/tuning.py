@@ -260,6 +260,12 @@ FLIGHT_ANGLE, FLIGHT_PART = 0.35, 0.2
 """Longest step of a flight, in radians of the fastest mode, and in times to the surface: exact but
 for the change of a weak force."""
 
+ALMOST = 1e-9
+"""Change of the gap, relative to it, below which the force at the end of such a step is known."""
+
+FAINT = 1e-4
+"""Force, in the least to be felt, below which no higher harmonics of it are gathered."""
+
 LANDED = 0.06
 """First step after a flight, in times to the surface."""
 
