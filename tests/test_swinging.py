@@ -22,7 +22,7 @@ PS = sa.Contact(
 )
 """Polystyrene of Table 3 of Rajabifar et al. 2021."""
 ELASTIC = sa.Contact(PS.tip, sa.Elastic(4.25e9, 0.35), PS.surface)
-FREE = sa.Contact(PS.tip, PS.sample, sa.Repulsion(1e9, 1e-9, 0.3e-9))
+FREE = sa.Contact(PS.tip, PS.sample, sa.Repulsion(1e9, 0.05e-9))
 
 
 def swing(contact, lever, base, cycles, tolerance=1e-2, before=None):
@@ -139,16 +139,13 @@ def test_driven_levers_move_as_an_integrator_of_odes_has_them(modes, cycles, all
     assert np.abs(curves["deflection"][1:] - exact).max() < allowed * A0
 
 
-def test_a_slow_ramp_is_that_of_a_lever_in_balance():
-    """1 µm/s are 7500 periods: the lever rings at both snaps only, and takes few steps besides."""
-    motion, lever = sa.Triangle(20e-9, -5e-9, 1e-6), sa.Cantilever(4.0, 100, 150e3)
-    still = sa.solvers.Energy().solve(PS, motion, stiffness=4.0)
-    rings = sa.solvers.Energy().solve(PS, motion, lever=Resonator(lever.eigenmodes))
-    assert rings.force.max() == pytest.approx(still.force.max(), rel=1e-4)
-    assert rings.time.size < 6000
-    # The tip has inertia: it does not move while the surface falls.
-    assert rings.jump_time.size > 0
-    after = np.searchsorted(rings.time, rings.jump_time)
-    fastest = 1e-9 * 2 * pi * 150e3
-    moved = np.abs(np.diff(rings.tip_height))[after - 1]
-    assert (moved < 2 * fastest * np.diff(rings.time)[after - 1] + 1e-13).all()
+def test_the_tip_does_not_move_while_the_surface_falls():
+    """It has inertia: no step, of a fall either, moves it faster than it can swing."""
+    run = swing(PS, Resonator((sa.Eigenmode(K, F, 30),), (sa.Drive(F, A0),)), 8.49e-9, 60)
+    curves = run.collect_curves()
+    step, late = np.diff(curves["time"]), slice(2000, None)
+    fallen = np.abs(np.diff(curves["force"])) > 1e-2 * curves["force"].max()
+    fallen &= step < 1e-5 / F
+    assert fallen[late].any()
+    fastest = 1.2 * A0 * 2 * pi * F
+    assert (np.abs(np.diff(curves["deflection"])) < fastest * step + 1e-15)[late].all()
