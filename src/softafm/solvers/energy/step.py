@@ -210,10 +210,13 @@ def choose_ride(step, parameters, clock, mesh, controls):
 
 
 @inline
-def find_force(trial, law, parameters, mesh, work):
-    """Force on the tip, N: that of a lever's own balance, if it bends, but for what that misses."""
+def find_force(trial, swings, law, parameters, mesh, work):
+    """Force on the tip, N: that of a lever's own balance, if it bends, but for what that misses.
+
+    To a short step a lever that swings is so stiff that its deflection does not tell the force.
+    """
     n = mesh.nodes.size
-    if trial.lever > 0.0:
+    if trial.lever > 0.0 and not swings:
         return 2.0 * pi * trial.frame**2 * trial.lever * (work.u[n] - trial.rest)
     return tip_force(
         work.newton[1, :n], work.newton[0, :n], work.rise, mesh, trial.frame, law,
@@ -323,7 +326,7 @@ def step_on(
                 return FALL, count
             clock.step = max(RETRIED * step, 0.999 * shortest)
             continue
-        force = find_force(trial, law, parameters, mesh, work)
+        force = find_force(trial, SWINGS, law, parameters, mesh, work)
         error = judge(trial, force, parameters, mesh, controls, clock, work, room, pivots)
         growth = SAFETY * max(error, 1e-6) ** (-1.0 / trial.history)
         if error > REFUSED and step > shortest:
