@@ -132,6 +132,7 @@ def test_all_cycles_can_be_kept():
     run = sa.tapping_transient(PS, QUICK, DRIVE, BASE, 12, keep="all")
     assert float(run.time[-1]) == pytest.approx(12 / 278e3, rel=1e-12)
     assert (np.diff(run.time) > 0).all()
+    assert np.diff(run.time).max() < 0.1 / 278e3
     inside = run.time.values > 11 / 278e3
     assert float(run.force[inside].max()) <= float(run.force_max[-1]) * (1 + 1e-12)
 

@@ -40,6 +40,23 @@ def draw(runs):
     figure.savefig(OUT)
 
 
+def draw_peak_force(swung):
+    """The last period: force and deflection against time, apparent force against the base."""
+    figure, axes = plt.subplots(1, 3, figsize=(9.6, 3.2), dpi=150, layout="constrained")
+    last = swung.time.values > 2 / 2e3
+    time, base = 1e6 * (swung.time.values[last] - 2 / 2e3), 1e9 * swung.base_height.values[last]
+    force, bent = 1e9 * swung.force.values[last], 1e9 * swung.deflection.values[last]
+    axes[0].plot(time, force)
+    axes[1].plot(time, bent)
+    axes[2].plot(base, 1e9 * swung.apparent_force.values[last], label="apparent")
+    axes[2].plot(base, force, label="true")
+    axes[0].set(xlabel="Time (µs)", ylabel="Force (nN)", xlim=(210, 300))
+    axes[1].set(xlabel="Time (µs)", ylabel="Deflection (nm)", xlim=(210, 450))
+    axes[2].set(xlabel="Base height (nm)", ylabel="Force (nN)", xlim=(-7, 15))
+    axes[2].legend(frameon=False)
+    figure.savefig(OUT.with_name("peak-force.png"))
+
+
 def main():
     runs = {
         name: sa.tapping_transient(CONTACT, LEVER, DRIVE, HEIGHT, start=start)
@@ -75,6 +92,18 @@ def main():
         f"E {float(bimodal.dissipation):.4g} J, force_max {float(bimodal.force_max):.4g} N"
     )
     draw(runs)
+    swung = sa.peak_force_tapping(
+        CONTACT, sa.Cantilever(4.0, 100, 150e3), 100e-9, 2e3, peak_force=20e-9
+    )
+    draw_peak_force(swung)
+    last = swung.isel(cycle=-1)
+    after = swung.time.values > float(swung.time[-1]) - 0.22e-3
+    print(
+        f"peak force {float(last.force_max):.4g} N at Z = {float(swung.mean_height):.4g} m: base "
+        f"{float(last.drive_work):.4g} J, contact {float(last.dissipation):.4g} J (sample "
+        f"{float(last.viscous_loss + last.jump_loss):.4g} J), lever {float(last.damping):.4g} J, "
+        f"rings by {np.abs(swung.deflection.values[after]).max():.3g} m"
+    )
 
 
 if __name__ == "__main__":

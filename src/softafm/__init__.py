@@ -18,6 +18,7 @@ from softafm.instrument.drive import Drive
 from softafm.instrument.motions import Sine, Trajectory, Triangle
 from softafm.modes.approach import approach_curve
 from softafm.modes.force_distance import force_distance
+from softafm.modes.peak_force import peak_force_tapping
 from softafm.modes.spectroscopy import force_spectroscopy
 from softafm.modes.tapping import tapping_cycle
 from softafm.modes.transient import tapping_transient
@@ -135,6 +136,7 @@ __all__ = [
     "load_map",
     "load_sweep",
     "modes",
+    "peak_force_tapping",
     "plot",
     "plot_contact",
     "plot_map",

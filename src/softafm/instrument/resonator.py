@@ -155,6 +155,12 @@ class Resonator:
         return Rigid()
 
 
+def shake(lever: Resonator, frequency: float, amplitude: float) -> Drive:
+    """Return the drive that shakes the base of a lever by an amplitude, m, at a frequency, Hz."""
+    unit = Drive(frequency, 1e-9, "base")
+    return Drive(frequency, 1e-9 * amplitude / lever.find_shaking(unit), "base")
+
+
 def check_drives(drives: Any, modes: Sequence[Eigenmode]) -> tuple[Drive, ...]:
     """Return one drive or several as a tuple; ValueError if one cannot drive these modes."""
     given = (drives,) if isinstance(drives, Drive) else drives

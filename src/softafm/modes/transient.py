@@ -213,14 +213,20 @@ def _liken(base: Motion, lever: Resonator) -> Sine:
     return Sine(find_lowest_height(base), amplitude, frequency, "steady")
 
 
-def _simulate(inputs: Inputs, settings: Settings) -> Outcome:
-    """Carry surface and lever from cycle to cycle."""
-    tolerance, solver = check_tolerance(settings.tolerance), choose_solver(settings.solver)
+def choose_energy(given: Solver | None) -> Energy:
+    """Return the solver of a run, ``Energy()`` for None; ValueError if it is another one."""
+    solver = choose_solver(given)
     if not isinstance(solver, Energy):
         raise ValueError(
             f"solver = '{solver.kind}': cannot carry a lever with inertia; leave it out, or take "
             "'energy'"
         )
+    return solver
+
+
+def _simulate(inputs: Inputs, settings: Settings) -> Outcome:
+    """Carry surface and lever from cycle to cycle."""
+    tolerance, solver = check_tolerance(settings.tolerance), choose_energy(settings.solver)
     keep = check_choice("keep", inputs.motion.keep, ("last", "all", "none"))
     lever = make_lever(inputs)
     base, cycles = make_base(inputs, lever)
@@ -244,7 +250,7 @@ def _simulate(inputs: Inputs, settings: Settings) -> Outcome:
             text = f"interrupted after {run.done} of {cycles} cycles"
             warned.append(AccuracyWarning(text))
     values = run.observe()
-    warned += [*run.list_doubts(), *_doubt_balance(values, tolerance)]
+    warned += [*run.list_doubts(), *doubt_balance(values, tolerance)]
     for warning in warned:
         warn_caller(warning)
     data, coordinates = _tabulate(values, run, base, ends[: run.done])
@@ -264,7 +270,7 @@ def _describe(base: Any) -> Any:
     return describe(base)
 
 
-def _doubt_balance(values: dict[str, np.ndarray], tolerance: float) -> tuple[AccuracyWarning, ...]:
+def doubt_balance(values: dict[str, np.ndarray], tolerance: float) -> tuple[AccuracyWarning, ...]:
     """Return what to warn of where the sample takes another energy than the tip loses."""
     taken = values["viscous_loss"] + values["jump_loss"]
     fed = np.abs(values["drive_work"]).max()

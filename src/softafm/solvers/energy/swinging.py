@@ -172,6 +172,12 @@ class Swinging(Run):
         curves = {name: records[key] for name, key in names.items()}
         return curves | {"deflection": strokes[:, 2]}
 
+    def collect_jumps(self) -> tuple[np.ndarray, np.ndarray]:
+        """Return when elastic jumps took place in what was kept, s, and what they released, J."""
+        records = np.concatenate([each for each, _ in self.kept or ()])
+        jumped = records["jump"] > 0
+        return records["time"][jumped], records["jump"][jumped]
+
     def pass_through(self, ends: np.ndarray, found: np.ndarray) -> Iterator[int]:
         """Run to the ``ends`` of cycles, s; a row of ``found`` gets what is observed of each.
 
@@ -180,7 +186,8 @@ class Swinging(Run):
         surface, done = self.surface, 0
         while done < ends.size:
             surface.target = self.target
-            stop = min(done + _CHUNK, ends.size)
+            # What the loop fills more than once in a call cannot be kept.
+            stop = min(done + (_CHUNK if self.kept is None else 1), ends.size)
             while done < stop:
                 outcome, records, more = self._advance_cycles(ends[done:stop], found[done:stop])
                 done += more
