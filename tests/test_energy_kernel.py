@@ -27,7 +27,6 @@ from softafm.solvers.energy.layout import (
     make_mesh,
     new_clock,
     new_room,
-    no_swing,
 )
 from softafm.solvers.energy.memory import find_memory_weights
 from softafm.solvers.energy.proposal import find_extrapolation_weights
@@ -526,8 +525,7 @@ def test_steps_equal_those_of_a_plain_newton_method():
     outcome, taken = advance(
         height, profile, PRESSURE, hold, remember_nothing, parameters, background, MESH, UNIFORM,
         controls, fields, clock, np.empty(0), np.zeros(modes), records, shapes,
-        new_room(n, MESH.far.size, modes), np.empty(n + 2, np.int64), no_swing(),
-        np.empty((0, 3)), np.empty(0),
+        new_room(n, MESH.far.size, modes), np.empty(n + 2, np.int64),
     )  # fmt: skip
     assert outcome == FULL
     assert taken == count

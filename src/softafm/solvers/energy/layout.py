@@ -259,11 +259,6 @@ def no_background() -> Background:
     return Background(np.empty((0, 0)), 1.0, 1.0, 1.0, 1.0, 0.0, 0.0, nodes, np.empty((0, 0)))
 
 
-def no_swing() -> Swing:
-    """Return what is known of the tip of a lever without inertia."""
-    return Swing(np.empty(0), 0.0, 1.0, 0.0, 1.0, 0.0)
-
-
 def new_clock() -> np.void:
     """Return a clock of zeros."""
     return np.zeros(1, CLOCK_FIELDS)[0]

@@ -31,7 +31,6 @@ from softafm.solvers.energy.layout import (
     TABULATE,
     TRIGGERED,
     Controls,
-    no_swing,
 )
 from softafm.solvers.energy.steadiness import Steadiness
 from softafm.solvers.energy.step import advance
@@ -57,7 +56,6 @@ from softafm.solvers.periodic import PeriodicMemory
 from softafm.solvers.shapes import Shape, interpolate_to_common_radii
 
 _advance = enter(advance)
-_NO_SWING, _NO_STROKES, _NO_TURNS = no_swing(), np.empty((0, 3)), np.empty(0)
 _CHUNK = 256
 """Records that one call of the compiled loop may fill."""
 
@@ -282,7 +280,7 @@ class Run:
             *surface.functions[:-1], surface.parameters, surface.background, surface.mesh,
             surface.table, controls, surface.fields, surface.clock, surface.lever_state,
             surface.lag_energy, records, shapes, surface.room(),
-            np.empty(surface.mesh.nodes.size + 2, np.int64), _NO_SWING, _NO_STROKES, _NO_TURNS,
+            np.empty(surface.mesh.nodes.size + 2, np.int64),
         )  # fmt: skip
         if outcome == TABULATE:
             surface.tabulate(float(surface.clock["wanted"]))

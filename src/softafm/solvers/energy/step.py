@@ -12,6 +12,7 @@ from softafm.compiled.dense import multiply
 from softafm.compiled.functions import (
     ACCEPTANCE,
     HEIGHT,
+    INTERNAL,
     PRESSURE,
     PROFILE,
     RESPONSE,
@@ -51,6 +52,7 @@ from softafm.solvers.energy.layout import (
     TABULATE,
     TRIGGERED,
     VECTOR,
+    Swing,
 )  # fmt: skip
 from softafm.solvers.energy.memory import (
     CURVATURE,
@@ -365,11 +367,26 @@ def step_on(
     return FULL, count
 
 
-STEPPING = types.UniTuple(int64, 2)(
+STEPPING = (
     pointer_to(HEIGHT), pointer_to(PROFILE), pointer_to(PRESSURE), pointer_to(RESPONSE),
     pointer_to(ACCEPTANCE), PARAMETERS, BACKGROUND, MESH, TABLE, CONTROLS, MATRIX, CLOCK,
-    VECTOR, VECTOR, RECORDS, MATRIX, ROOM, PIVOTS, SWING, MATRIX, VECTOR,
+    VECTOR, VECTOR, RECORDS, MATRIX, ROOM, PIVOTS,
 )  # fmt: skip
+STEPPED = types.UniTuple(int64, 2)
+SWINGING = STEPPED(*STEPPING, SWING, MATRIX, VECTOR)
 
-advance = compile_for(STEPPING)(fix(step_on, "advance", SWINGS=False))
-"""``step_on`` for a tip that is moved, and for levers without inertia."""
+_advance_rigidly = compile_for(SWINGING, **INTERNAL)(fix(step_on, "advance_rigidly", SWINGS=False))
+
+
+@compile_for(STEPPED(*STEPPING))
+def advance(
+    height, profile, law, respond, accept_force, parameters, background, mesh, table, controls,
+    fields, clock, lever_state, lag_energy, records, shapes, room, pivots,
+):  # fmt: skip
+    """``step_on`` for a tip that is moved, and for levers without inertia."""
+    none = lag_energy[:0]
+    return _advance_rigidly(
+        height, profile, law, respond, accept_force, parameters, background, mesh, table, controls,
+        fields, clock, lever_state, lag_energy, records, shapes, room, pivots,
+        Swing(none, 0.0, 1.0, 0.0, 1.0, 0.0), shapes[:0], none,
+    )  # fmt: skip

@@ -9,36 +9,11 @@ from math import cos, inf, sin
 
 from numba import float64, int64, types
 
-from softafm.compiled.functions import (
-    ACCEPTANCE,
-    HEIGHT,
-    PRESSURE,
-    PROFILE,
-    RESPONSE,
-    compile_for,
-    fix,
-    inline,
-    pointer_to,
-)
-from softafm.solvers.energy.layout import (
-    BACKGROUND,
-    CLOCK,
-    CONTROLS,
-    FINISHED,
-    MATRIX,
-    MESH,
-    PARAMETERS,
-    PIVOTS,
-    RECORDS,
-    ROOM,
-    SWING,
-    TABLE,
-    VECTOR,
-    Controls,
-)
-from softafm.solvers.energy.step import STEPPING, step_on
+from softafm.compiled.functions import INTERNAL, compile_for, fix, inline
+from softafm.solvers.energy.layout import FINISHED, MATRIX, RECORDS, SWING, VECTOR, Controls
+from softafm.solvers.energy.step import STEPPING, SWINGING, step_on
 
-advance_swinging = compile_for(STEPPING)(fix(step_on, "advance_swinging", SWINGS=True))
+advance_swinging = compile_for(SWINGING, **INTERNAL)(fix(step_on, "advance_swinging", SWINGS=True))
 """``step_on`` for levers with inertia."""
 
 # Entries of `sums`, of one cycle; then the damping of each mode, and the spectrum of the force.
@@ -160,9 +135,7 @@ def begin_cycle(sums):
 @compile_for(
     types.UniTuple(int64, 3)(
         VECTOR, MATRIX, VECTOR, VECTOR, VECTOR, VECTOR, int64, float64, MATRIX,
-        pointer_to(HEIGHT), pointer_to(PROFILE), pointer_to(PRESSURE), pointer_to(RESPONSE),
-        pointer_to(ACCEPTANCE), PARAMETERS, BACKGROUND, MESH, TABLE, CONTROLS, MATRIX, CLOCK,
-        VECTOR, VECTOR, RECORDS, MATRIX, ROOM, PIVOTS, SWING, MATRIX, VECTOR,
+        *STEPPING, SWING, MATRIX, VECTOR,
     ),
 )  # fmt: skip
 def advance_cycles(
