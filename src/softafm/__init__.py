@@ -13,12 +13,15 @@ from softafm.draw.storyboard import plot_profiles
 from softafm.draw.tip import plot_tip
 from softafm.errors import AccuracyWarning, DivergedError, DoubtfulValueWarning
 from softafm.files.measured import read_trajectory
-from softafm.instrument.cantilever import Cantilever
+from softafm.instrument.cantilever import Cantilever, Eigenmode
+from softafm.instrument.drive import Drive
 from softafm.instrument.motions import Sine, Trajectory, Triangle
 from softafm.modes.approach import approach_curve
 from softafm.modes.force_distance import force_distance
+from softafm.modes.peak_force import peak_force_tapping
 from softafm.modes.spectroscopy import force_spectroscopy
 from softafm.modes.tapping import tapping_cycle
+from softafm.modes.transient import tapping_transient
 from softafm.results.datasets import export, load, save
 from softafm.rheology import (
     Elastic,
@@ -88,7 +91,9 @@ __all__ = [
     "CustomTip",
     "DivergedError",
     "DoubtfulValueWarning",
+    "Drive",
     "Dugdale",
+    "Eigenmode",
     "Elastic",
     "Exponential",
     "FlatPunch",
@@ -131,6 +136,7 @@ __all__ = [
     "load_map",
     "load_sweep",
     "modes",
+    "peak_force_tapping",
     "plot",
     "plot_contact",
     "plot_map",
@@ -150,6 +156,7 @@ __all__ = [
     "solvers",
     "sweep",
     "tapping_cycle",
+    "tapping_transient",
 ]
 
 _LATER = {

@@ -109,6 +109,11 @@ class Contact:
         hardness = min(self.softened_modulus, _DIAMOND)
         return law.attracts and law.largest_tension > _FAINT * hardness
 
+    @property
+    def sticky(self) -> bool:
+        """Whether the sample feels an attraction that takes work to part."""
+        return self.adhesive and self.pulled
+
     @cached_property
     def edge_gap(self) -> float:
         """Gap at the edge of the contact, m: that of largest tension.

@@ -52,7 +52,7 @@ def collect_parts(result: "Dataset") -> Parts | None:
     """Return what is drawn of a result; None if there is nothing."""
     if "sweep_height" in result.dims:
         return _collect_approach_curve(result) if result.sizes["sweep_height"] else None
-    if "time" in result.dims and result.sizes["time"] > 1:
+    if "jump_time" in result and result.sizes["time"] > 1:
         return _collect_history(result)
     return _collect_curve(result)
 
@@ -69,10 +69,11 @@ def find_axis(name: str) -> tuple[str, str | None]:
 
 
 def _collect_curve(result: "Dataset") -> Parts | None:
-    """Return the curves over the coordinate of the first panel."""
+    """Return the curves over the coordinate of the first panel; of several at once the first."""
     names = dict.fromkeys(name for panel in find_panels(result) for name in panel if name in result)
     along = result[next(iter(names))].dims if names else ()
-    columns = {name: result[name].values for name in names if result[name].dims == along}
+    shown = {name: result[name] for name in names if result[name].dims[:1] == along}
+    columns = {n: each.values.reshape(each.shape[0], -1)[:, 0] for n, each in shown.items()}
     return Parts({"curve": columns}, {}, {}) if len(along) == 1 and len(columns) > 1 else None
 
 

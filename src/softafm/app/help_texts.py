@@ -8,7 +8,7 @@ from typing import Any
 
 from softafm.experiment import schema
 from softafm.files.measured import read_trajectory
-from softafm.instrument.cantilever import Cantilever
+from softafm.instrument.cantilever import Cantilever, Eigenmode
 from softafm.instrument.motions import Sine, Trajectory, Triangle
 from softafm.modes.approach import approach_curve
 from softafm.modes.force_distance import force_distance
@@ -34,6 +34,7 @@ _STANDS_FOR: dict[Any, tuple[Callable, ...]] = {
     schema.TrajectoryMotion: _TRAJECTORY,
     schema.BaseTrajectoryMotion: _TRAJECTORY,
     schema.SweepMotion: (approach_curve, schema.SweepMotion),
+    schema.EigenmodeTable: (Eigenmode,),
     schema.LeverTable: (Cantilever,),
     schema.ResonatorTable: (Cantilever,),
     schema.Run: (force_distance,),

@@ -9,6 +9,7 @@ import sys
 from collections.abc import Callable
 from functools import cache, cached_property, partial
 from hashlib import sha256
+from types import FunctionType
 from typing import Any
 
 from numba import config, float64, int64, njit, types, void
@@ -103,6 +104,17 @@ def enter(loop: Any) -> Callable:
     To look at the types of many arrays and records takes 20 µs at every call.
     """
     return next(iter(loop.overloads.values())).entry_point
+
+
+def fix(function: Callable, name: str, **known: Any) -> Any:
+    """Return a function under another name to which some globals are constants.
+
+    Compiled, it is then free of all that those rule out.
+    """
+    fixed = FunctionType(function.__code__, {**function.__globals__, **known}, name)
+    fixed.__module__, fixed.__qualname__ = function.__module__, name
+    fixed.__doc__ = function.__doc__
+    return fixed
 
 
 def inline(function: Callable) -> Any:

@@ -72,7 +72,7 @@ from softafm.experiment.entries import (
     quantity_of,
 )
 from softafm.files.measured import read_base_trajectory, read_trajectory
-from softafm.instrument.cantilever import Cantilever
+from softafm.instrument.cantilever import Cantilever, Eigenmode
 from softafm.instrument.motions import Sine, Trajectory, Triangle
 from softafm.modes import Mode
 from softafm.modes.driven import AmplitudeSweep
@@ -275,15 +275,49 @@ class SweepMotion(Table):
         return AmplitudeSweep(self.free_amplitude, ratios, self.drive_frequency)
 
 
+class EigenmodeTable(Table):
+    """One of the ``[[cantilever.higher_modes]]``."""
+
+    stiffness: Annotated[Stiffness, Positive]
+    frequency: Annotated[Frequency, Positive]
+    quality_factor: Annotated[QualityFactor, Positive]
+
+    def build(self) -> Eigenmode:
+        return Eigenmode(self.stiffness, self.frequency, self.quality_factor)
+
+
 class LeverTable(Table):
     """``[cantilever]`` of a lever that bends slowly."""
 
     stiffness: Annotated[Stiffness, Positive]
     quality_factor: Annotated[QualityFactor, Positive] | None = None
     frequency: Annotated[Frequency, Positive] | None = None
+    higher_modes: (
+        Annotated[
+            Entries,
+            Field(
+                description="tables [[cantilever.higher_modes]], each with stiffness, frequency "
+                "and quality_factor"
+            ),
+        ]
+        | None
+    ) = None
+
+    @field_validator("higher_modes")
+    @classmethod
+    def _build_modes(cls, modes: tuple[Any, ...], info: ValidationInfo) -> tuple[Eigenmode, ...]:
+        folder = info.context["folder"] if info.context else Path()
+        built = []
+        for i, mode in enumerate(modes):
+            name = f"higher_modes[{i}]"
+            if not isinstance(mode, dict):
+                raise ConfigError([f"{name} = {show(mode)}: must be a table"])
+            built.append(build_kind(name, mode, EigenmodeTable, folder=folder))
+        return tuple(built)
 
     def build(self) -> Cantilever:
-        return Cantilever(self.stiffness, self.quality_factor, self.frequency)
+        modes = self.higher_modes or ()
+        return Cantilever(self.stiffness, self.quality_factor, self.frequency, modes)
 
 
 class ResonatorTable(LeverTable):

@@ -53,6 +53,13 @@ class Lever(Protocol):
         shape that has become unstable to the next stable one."""
 
 
+class Inert(Protocol):
+    """Power of a lever with inertia: it knows where its tip is while the surface falls."""
+
+    def deflection_at(self, time: float, state: np.ndarray) -> float:
+        """Return the deflection, m, at a time, s, at which it remembers ``state``."""
+
+
 @dataclass(frozen=True)
 class Rigid:
     """A lever that does not bend."""

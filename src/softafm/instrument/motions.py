@@ -208,6 +208,37 @@ class Sine:
         return sine, np.array([self.mean_height, self.amplitude, self.frequency])
 
 
+@dataclass(frozen=True)
+class Still:
+    """A height that does not change, m, for a duration, s: that of a base at rest."""
+
+    kind: ClassVar[str] = "still"
+    rest: float
+    duration: float
+    landmarks = np.empty(0)
+    top_speed = 0.0
+
+    @property
+    def breaks(self) -> np.ndarray:
+        """First and last time, s."""
+        return np.array([0.0, self.duration])
+
+    def height(self, time: ArrayLike) -> np.ndarray:
+        """Height at ``time`` (s), m."""
+        return np.full(np.shape(time), self.rest)
+
+    def velocity(self, time: ArrayLike) -> np.ndarray:
+        """Velocity at ``time`` (s), m/s."""
+        return np.zeros(np.shape(time))
+
+    @property
+    def compiled_height(self) -> tuple[Any, np.ndarray]:
+        """The height as a compiled function and its parameters (see ``softafm.compiled``)."""
+        from softafm.instrument.compiled_motions import still
+
+        return still, np.array([self.rest])
+
+
 def find_lowest_height(motion: Any) -> float:
     """Return the lowest height of any motion, m; it is met at a break or a landmark."""
     return float(np.min(motion.height(np.concatenate([motion.breaks, motion.landmarks]))))

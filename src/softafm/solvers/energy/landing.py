@@ -34,7 +34,9 @@ class Landing:
 
     def __init__(self, surface: "Surface", time: float):
         self.surface = surface
-        self.base = surface.functions.height(time, surface.parameters.height)
+        # A lever with inertia holds the tip where it is, bent.
+        self.held = 0.0 if surface.bends else float(surface.clock["deflection"])
+        self.base = surface.functions.height(time, surface.parameters.height) + self.held
         self.compliance = float(surface.parameters.compliance[0])
         self.lever = surface.lever.stiffness if surface.bends else inf
         law = surface.contact.surface
@@ -218,7 +220,7 @@ def _snap_in(surface: "Surface") -> tuple[float, ...] | None:
         )  # fmt: skip
     surface.fields = fields
     surface.clock["frame"] = radius
-    surface.clock["deflection"] = height - landing.base
+    surface.clock["deflection"] = landing.held + height - landing.base
     record = surface.take(shape, v)
     surface.clock["edge"] = surface.clock["edge_earlier"] = radius
     surface.clock["felt"] = surface.clock["felt_earlier"] = radius

@@ -57,6 +57,9 @@ CLOCK_FIELDS = record(
     "rides",  # number of past shapes that Newton's method rode with: frame and edge are one
     "found",  # radius of the frame that it found, m
     "stability",  # s of the last shape found so: positive if it is stable, 0 at the fold
+    "flown",  # time since which the fields are those of the start of a flight, s
+    "grip",  # stiffness of the contact, in that of a swinging lever in the last step
+    "bend",  # second derivative of the force at the last step of such a lever, N/s², or 0
 )  # fmt: skip
 """State of a run besides its fields."""
 
@@ -191,6 +194,25 @@ class Controls(NamedTuple):
     trace_from: float
 
 
+class Swing(NamedTuple):
+    """What is known of a tip that swings on a lever with inertia; no ``pull`` for other levers.
+
+    ``pull`` (n,) is force times height squared, N m², at heights e^(``start`` + i ``spacing``), m,
+    above a surface that does not deform. A tip farther than ``far``, m, flies. ``fading``, s, is
+    the time in which the largest attraction is forgotten, down to the ``least`` force to be felt,
+    N. A row of its strokes holds, of the step that leads to a record, the force at its start, N,
+    the second derivative of the force in the step before, N/s², and of its end the deflection, then
+    those of the modes, m, and their speeds, m/s.
+    """
+
+    pull: np.ndarray
+    start: float
+    spacing: float
+    far: float
+    fading: float
+    least: float
+
+
 class Room(NamedTuple):
     """Memory for the compiled loops to work in, for n nodes, f radii beyond and m elements."""
 
@@ -224,6 +246,7 @@ TABLE = types.NamedTuple((float64[:, :, ::1], float64, float64, MATRIX), Table)
 BACKGROUND = types.NamedTuple((MATRIX, *[float64] * 6, CONSTANT_VECTOR, MATRIX), Background)
 CONTROLS = types.NamedUniTuple(float64, len(Controls._fields), Controls)
 CLOCK = from_dtype(CLOCK_FIELDS)
+SWING = types.NamedTuple((VECTOR, *[float64] * 5), Swing)
 PIVOTS = int64[::1]
 ROOM = types.NamedUniTuple(MATRIX, len(Room._fields), Room)
 RECORDS = types.Array(from_dtype(RECORD_FIELDS), 1, "C")

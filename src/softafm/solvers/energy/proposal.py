@@ -1,5 +1,6 @@
 """Proposal of a step: its length, its frame, the past in that frame, and a guess of the shape."""
 
+from math import inf
 from typing import NamedTuple
 
 import numpy as np
@@ -102,12 +103,15 @@ def furnish(room):
 
 
 @inline
-def choose_step(clock, controls, left):
-    """Length of the next step, s, of which ``left`` are left; the last two are of equal length."""
+def choose_step(clock, controls, left, speed):
+    """Length of the next step, s, of which ``left`` are left; the last two are of equal length.
+
+    ``speed`` is that of the tip at most, m/s.
+    """
     step = min(clock.step, controls.longest_step)
     if clock.axis_gap > FELT * controls.edge_gap:
         # Do not leap over a contact that has not been felt yet.
-        step = min(step, APPROACH * clock.axis_gap / controls.top_speed)
+        step = min(step, APPROACH * clock.axis_gap / speed)
     if step > 0.5 * left:
         step = left if step >= left else 0.5 * left
     return step
@@ -187,10 +191,13 @@ def carry_past(
 
 @inline
 def propose(
-    step, frame, rides, height, profile, respond, parameters, background, mesh, fields, clock,
-    lever_state, work,
+    step, frame, rides, swings, height, profile, respond, parameters, background, mesh, fields,
+    clock, lever_state, work,
 ):  # fmt: skip
-    """Move the past to the frame of a step, and guess the shape at its end: ``work.u``."""
+    """Move the past to the frame of a step, and guess the shape at its end: ``work.u``.
+
+    The deflection of a lever that ``swings``, or that holds the tip, is foreseen by the lever.
+    """
     n, history = mesh.nodes.size, int(clock.history)
     h0, compliance = carry_past(
         step, frame, height, profile, parameters, background, mesh, fields, clock, work
@@ -211,11 +218,15 @@ def propose(
     deflection = 0.0
     for k in range(history):
         deflection += work.past_weights[k] * past[k]
-    for i in range(n):
-        work.u[i] = work.guess[i]
-    work.u[n] = deflection
     rest, stiffness = respond(
         clock.time + step, step, clock.deflection, clock.force, parameters.lever, lever_state
     )
+    if swings or stiffness == inf:
+        deflection, forces = rest, (clock.force, clock.force_earlier, clock.force_earliest)
+        for k in range(history):
+            deflection += work.past_weights[k] * forces[k] / stiffness
+    for i in range(n):
+        work.u[i] = work.guess[i]
+    work.u[n] = deflection
     lever = spring_constant(stiffness, frame)
     return Trial(step, frame, h0, compliance, deflection, lever, rest, history, rides)

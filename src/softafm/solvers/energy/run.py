@@ -95,7 +95,7 @@ class Run:
             newton=self.surface.accuracy,
             slack=LAG,
             held=0.0,
-            cover=0.0 if contact.pulled else COVER,
+            cover=0.0 if contact.sticky else COVER,
             least_frame=self.surface.open_frame if self.surface.rimmed else 0.0,
             finest=0.0,
             coarsest=0.0,
@@ -110,6 +110,7 @@ class Run:
         self.shapes: list[Shape] | None = [] if keep_shapes else None
         self.coarsest = 0.0, 0.0
         self.slips, self.end_of_slip = 0, -np.inf
+        self.lands, self.creeps = contact.sticky, True
         self.cycle, self.unsteady = 1, 0.0
         self.steadiness = Steadiness(self.strictness)
         self.falls: list[int] = []  # the records that they led to
@@ -341,14 +342,15 @@ class Run:
         duration = min(2.0**self.slips * self.controls.shortest_step, stop - start)
         end = stop if duration == stop - start else start + duration
         self.end_of_slip = start + SLIPS_AGAIN * duration
-        record = None
-        if self.contact.pulled and self.slips == 0:
-            record = land(surface, end, before, touching=edge > 0)
-        if record is None:
-            creep_down(self, end, duration)
         surface.functions.accept_force(
             end, duration, force, force, surface.parameters.lever, surface.lever_state
         )
+        surface.let_pass(end)
+        record = None
+        if self.lands and self.slips == 0:
+            record = land(surface, end, before, touching=edge > 0)
+        if record is None and self.creeps:
+            creep_down(self, end, duration)
         clock["time"], clock["step"] = end, 10 * self.controls.shortest_step
         self._settle() if record is None else self._note(record)
         self.falls.append(self.count - 1)

@@ -4,7 +4,7 @@ An implicit predictor-corrector method. The predictor extrapolates shape and for
 an equilibrium, and their difference, with the error of the memory, sets the length of the step.
 """
 
-from math import inf, pi
+from math import exp, inf, pi
 
 from numba import float64, int64, types
 
@@ -12,14 +12,18 @@ from softafm.compiled.dense import multiply
 from softafm.compiled.functions import (
     ACCEPTANCE,
     HEIGHT,
+    INTERNAL,
     PRESSURE,
     PROFILE,
     RESPONSE,
     compile_for,
+    fix,
     inline,
     pointer_to,
 )
+from softafm.instrument.compiled_oscillators import bend_late, bound_speed, measure_motion
 from softafm.solvers.energy.equilibrium import tip_force
+from softafm.solvers.energy.flight import end_flight, fly, may_fly
 from softafm.solvers.energy.frame import find_radius, follow_edge, foresee_frame
 from softafm.solvers.energy.layout import (
     BACKGROUND,
@@ -43,10 +47,12 @@ from softafm.solvers.energy.layout import (
     REMESH,
     ROOM,
     STUCK,
+    SWING,
     TABLE,
     TABULATE,
     TRIGGERED,
     VECTOR,
+    Swing,
 )  # fmt: skip
 from softafm.solvers.energy.memory import (
     CURVATURE,
@@ -70,6 +76,7 @@ from softafm.solvers.energy.tracing import answer_shift
 from softafm.solvers.energy.tuning import (
     AS_WIDE,
     AT_TRIGGER,
+    LATE,
     LEAST_GROWTH,
     LEAST_RETRY,
     MOST_GROWTH,
@@ -205,15 +212,42 @@ def choose_ride(step, parameters, clock, mesh, controls):
 
 
 @inline
-def find_force(trial, law, parameters, mesh, work):
-    """Force on the tip, N: that of a lever's own balance, if it bends, but for what that misses."""
+def find_force(trial, swings, law, parameters, mesh, work):
+    """Force on the tip, N: that of a lever's own balance, if it bends, but for what that misses.
+
+    To a short step a lever that swings is so stiff that its deflection does not tell the force.
+    """
     n = mesh.nodes.size
-    if trial.lever > 0.0:
+    if trial.lever > 0.0 and not swings:
         return 2.0 * pi * trial.frame**2 * trial.lever * (work.u[n] - trial.rest)
     return tip_force(
         work.newton[1, :n], work.newton[0, :n], work.rise, mesh, trial.frame, law,
         parameters.law, work.far,
     )  # fmt: skip
+
+
+@inline
+def correct_lever(trial, force, parameters, clock, lever_state, work):
+    """Bend the force on a swinging lever over the step before this one, as seen from both sides.
+
+    That is of fourth order, while the straight line that the lever knows so far is of second.
+    Returns the second derivative used, N/s².
+    """
+    n, grip = work.hessian.shape[0] - 1, inf
+    if trial.rides == 0 and trial.lever > 0.0:
+        grip = abs(1.0 / (work.hessian[n, n] * trial.lever) - 1.0)
+    allowed = trial.history >= 2 and max(grip, clock.grip) < LATE
+    clock.grip = grip
+    if not allowed:
+        clock.bend = 0.0
+        return 0.0
+    last, step = clock.taken, trial.step
+    bend = (force - clock.force) / step - (clock.force - clock.force_earlier) / last
+    bend *= 2.0 / (step + last)
+    mean = 0.5 * (bend + clock.bend) if trial.history >= 3 and clock.bend != 0.0 else bend
+    clock.bend = bend
+    work.u[n] += bend_late(step, last, mean, parameters.lever, lever_state)
+    return mean
 
 
 @compile_for((CLOCK, float64, float64, float64, float64, float64))
@@ -228,16 +262,13 @@ def move_clock(clock, step, frame, edge, force, deflection):
     clock.force_scale = max(clock.force_scale, -force)
 
 
-@compile_for(
-    types.UniTuple(int64, 2)(
-        pointer_to(HEIGHT), pointer_to(PROFILE), pointer_to(PRESSURE), pointer_to(RESPONSE),
-        pointer_to(ACCEPTANCE), PARAMETERS, BACKGROUND, MESH, TABLE, CONTROLS, MATRIX, CLOCK,
-        VECTOR, VECTOR, RECORDS, MATRIX, ROOM, PIVOTS,
-    ),
-)  # fmt: skip
-def advance(
+SWINGS = False
+"""Whether the lever has inertia: constant in each of the two loops that ``step_on`` becomes."""
+
+
+def step_on(
     height, profile, law, respond, accept_force, parameters, background, mesh, table, controls,
-    fields, clock, lever_state, lag_energy, records, shapes, room, pivots,
+    fields, clock, lever_state, lag_energy, records, shapes, room, pivots, swing, strokes, turns,
 ):  # fmt: skip
     """Step the surface in time until ``controls.end``, full records, a need to remesh, TABULATE: a
     frame is wanted whose stiffness the table does not reach, or FALL: no stable shape within the
@@ -246,7 +277,9 @@ def advance(
     ``fields`` (MEMORY + elements, n), ``clock``, ``lever_state`` and ``lag_energy`` (elements,)
     hold the state and are updated, by accepted steps only. Every accepted step fills one of
     ``records``, and a row of ``shapes`` (the deformation) if that has rows. Returns why it stopped,
-    and the number of steps accepted. ``room`` is overwritten.
+    and the number of steps accepted. ``room`` is overwritten. What a tip that swings does besides
+    fills ``strokes``, as ``layout.Swing`` says; ``turns`` (8 for each filter of the lever)
+    is overwritten.
     """
     n = mesh.nodes.size
     work = furnish(room)
@@ -258,7 +291,20 @@ def advance(
             return FINISHED, count
         if clock.tries >= controls.most_tries:
             return STUCK, count
-        step = choose_step(clock, controls, left)
+        speed = controls.top_speed
+        if SWINGS:
+            if may_fly(parameters, swing, fields, clock, lever_state, strokes[count, 2:]):
+                before = count
+                count = fly(
+                    height, parameters, controls, swing, fields, clock, lever_state, lag_energy,
+                    records, strokes, count, turns,
+                )  # fmt: skip
+                if count > before:
+                    continue
+            if clock.flown > 0.0:
+                end_flight(parameters, mesh, fields, clock, lag_energy, room)
+            speed += bound_speed(parameters.lever, lever_state)
+        step = choose_step(clock, controls, left, speed)
         frame, rides = choose_ride(step, parameters, clock, mesh, controls)
         if frame != tabulated:
             if not find_stiffness(table, frame):
@@ -267,8 +313,8 @@ def advance(
             tabulated = frame
         clock.tries += 1
         trial = propose(
-            step, frame, rides, height, profile, respond, parameters, background, mesh, fields,
-            clock, lever_state, work,
+            step, frame, rides, SWINGS, height, profile, respond, parameters, background, mesh,
+            fields, clock, lever_state, work,
         )  # fmt: skip
         trial, found = solve(
             trial, height, profile, law, parameters, background, mesh, table, controls, fields,
@@ -282,7 +328,7 @@ def advance(
                 return FALL, count
             clock.step = max(RETRIED * step, 0.999 * shortest)
             continue
-        force = find_force(trial, law, parameters, mesh, work)
+        force = find_force(trial, SWINGS, law, parameters, mesh, work)
         error = judge(trial, force, parameters, mesh, controls, clock, work, room, pivots)
         growth = SAFETY * max(error, 1e-6) ** (-1.0 / trial.history)
         if error > REFUSED and step > shortest:
@@ -298,10 +344,18 @@ def advance(
         clock.time = controls.end if step == left else clock.time + step
         accept_force(clock.time, step, clock.force, force, parameters.lever, lever_state)
         record = records[count]
+        if SWINGS:
+            stroke = strokes[count]
+            stroke[0] = clock.force
+            stroke[1] = correct_lever(trial, force, parameters, clock, lever_state, work)
+            measure_motion(clock.time, parameters.lever, lever_state, stroke[2:])
         accept(
             trial, force, growth, parameters, background, mesh, controls, fields, clock, lag_energy,
             work, record,
         )  # fmt: skip
+        if SWINGS:
+            fading = clock.force_scale * exp(-trial.step / swing.fading)
+            clock.force_scale = max(fading, swing.least, -force)
         if shapes.shape[0] > count:
             for i in range(n):
                 shapes[count, i] = work.u[i]
@@ -311,3 +365,28 @@ def advance(
         if record.edge > 0.0 and not controls.finest <= record.coarseness <= controls.coarsest:
             return REMESH, count
     return FULL, count
+
+
+STEPPING = (
+    pointer_to(HEIGHT), pointer_to(PROFILE), pointer_to(PRESSURE), pointer_to(RESPONSE),
+    pointer_to(ACCEPTANCE), PARAMETERS, BACKGROUND, MESH, TABLE, CONTROLS, MATRIX, CLOCK,
+    VECTOR, VECTOR, RECORDS, MATRIX, ROOM, PIVOTS,
+)  # fmt: skip
+STEPPED = types.UniTuple(int64, 2)
+SWINGING = STEPPED(*STEPPING, SWING, MATRIX, VECTOR)
+
+_advance_rigidly = compile_for(SWINGING, **INTERNAL)(fix(step_on, "advance_rigidly", SWINGS=False))
+
+
+@compile_for(STEPPED(*STEPPING))
+def advance(
+    height, profile, law, respond, accept_force, parameters, background, mesh, table, controls,
+    fields, clock, lever_state, lag_energy, records, shapes, room, pivots,
+):  # fmt: skip
+    """``step_on`` for a tip that is moved, and for levers without inertia."""
+    none = lag_energy[:0]
+    return _advance_rigidly(
+        height, profile, law, respond, accept_force, parameters, background, mesh, table, controls,
+        fields, clock, lever_state, lag_energy, records, shapes, room, pivots,
+        Swing(none, 0.0, 1.0, 0.0, 1.0, 0.0), shapes[:0], none,
+    )  # fmt: skip

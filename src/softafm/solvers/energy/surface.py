@@ -101,13 +101,13 @@ class Surface:
         law_parameters[ORIGIN] = origin
         self.edge_gap = contact.edge_gap - origin
         # Where the cohesive zone ends: of a Lennard-Jones law the gap is twice that at the edge.
-        opens = 3 ** (1 / 6) * contact.reach if contact.pulled else self.edge_gap
+        opens = 3 ** (1 / 6) * contact.reach if contact.sticky else self.edge_gap
         self.open_gap = self.edge_gap + opens
         self.open_frame = contact.open_radius
         # Loose steps cost accuracy, a coarse mesh catches the edge: loops would be 15 % off.
         at_least = min(strictness, 1.0)
         self.accuracy = EQUILIBRIUM_ERROR * at_least
-        sharpness = contact.surface.sharpness if contact.pulled else 1.0
+        sharpness = contact.surface.sharpness if contact.sticky else 1.0
         finer = at_least**0.25
         self.target = SPACING * finer / max(1.0, sharpness)
         self.growth = GROWTH * finer * find_fineness(contact, motion)
@@ -125,7 +125,7 @@ class Surface:
         # Where the tip rises steeply, at the rim of a punch, it holds the edge; and a sample that
         # is all memory parts evenly, without an edge.
         free = not contact.steep and find_softening(self.parameters, period) < FAR_SOFTER
-        tabor = contact.tabor_after(period) if free and contact.pulled else 0.0
+        tabor = contact.tabor_after(period) if free and contact.sticky else 0.0
         slack = tabor > SLACK
         self.ride_from = RIDE_FROM * self.open_frame if slack else inf
         # What a steady cycle gathers is filtered at fixed radii, and a trace knows one stiffness.
@@ -204,6 +204,12 @@ class Surface:
         """Whether the lever follows a force at once."""
         return self.lever.stiffness < inf
 
+    def let_pass(self, time: float) -> None:
+        """Let a lever that knows its deflection at a time, s, have it: one with inertia."""
+        deflection_at = getattr(self.lever, "deflection_at", None)
+        if deflection_at is not None:
+            self.clock["deflection"] = deflection_at(time, self.lever_state)
+
     def mount(self, lever: Lever, state: np.ndarray) -> None:
         """Let another lever carry the tip, one that remembers ``state``, bent as it is now."""
         respond, accept_force, parameters = lever.compiled_response
@@ -252,7 +258,9 @@ class Surface:
         mesh, stretch = self.build_mesh(self.level), self.open_frame / self.clock["frame"]
         self.fields = self._carry(self.fields, mesh, stretch)
         self.lay(mesh)
-        self.clock["frame"], self.clock["deflection"] = self.open_frame, 0.0
+        self.clock["frame"] = self.open_frame
+        if self.bends:
+            self.clock["deflection"] = 0.0
         self.fields[DEFORMATION] = -self.parameters.compliance[1:] @ self.memory()
 
     def keep(self) -> tuple[Any, ...]:

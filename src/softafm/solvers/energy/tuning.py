@@ -241,6 +241,43 @@ the contact edge, whichever is less."""
 SHORTER = 1e-3
 """The same for slack contacts, in units of the others': after a jump their edges run fast."""
 
+# Levers with inertia (``benchmarks/dynamics.py``).
+
+FLIES_FROM = 8.0
+"""Gap on the axis, in gaps at the contact edge, from which the tip flies: the surface yields to it
+by less than the next part of that gap."""
+
+HARDLY_SAGS = 1e-3
+"""Elastic displacement of the surface under the tip, in gaps, from which on no tip flies."""
+
+STILL_FAR = 1.5
+"""Gap, in those from which it flies, beyond which a tip that comes down still begins to."""
+
+TAKEN_OVER = 0.5
+"""Gap, in the same, below which no step of a flight may end: the next step solves for the surface.
+"""
+
+FLIGHT_ANGLE, FLIGHT_PART = 0.35, 0.2
+"""Longest step of a flight, in radians of the fastest mode, and in times to the surface: exact but
+for the change of a weak force."""
+
+ALMOST = 1e-9
+"""Change of the gap, relative to it, below which the force at the end of such a step is known."""
+
+FAINT = 1e-4
+"""Force, in the least to be felt, below which no higher harmonics of it are gathered."""
+
+LANDED = 0.06
+"""First step after a flight, in times to the surface."""
+
+LATE = 0.015
+"""Stiffness of the contact, in that of the lever in a step, up to which a lever is corrected for
+the bend of the force: beyond, in long steps in contact, that pumps energy into the lever."""
+
+REMEMBERED = 10.0
+"""Periods in which the largest attraction, against which errors of the force count, is forgotten.
+"""
+
 # Falls.
 
 STIFF_SHARE = 0.2
