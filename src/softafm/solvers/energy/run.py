@@ -50,6 +50,7 @@ from softafm.solvers.energy.tuning import (
     SHORTER,
     SHORTEST_STEP,
     SLIPS_AGAIN,
+    STRICTER,
 )
 from softafm.solvers.history import History
 from softafm.solvers.periodic import PeriodicMemory
@@ -78,9 +79,10 @@ class Run:
         self.surface = Surface(contact, motion, lever, self.strictness, solver.finest_spacing)
         gap = self.surface.edge_gap
         fastest = min([gap / motion.top_speed, *self.surface.parameters.retardation])
-        shortest = SHORTEST_STEP
+        shortest, prediction = SHORTEST_STEP, PREDICTION_ERROR
         if self.surface.trace_from < np.inf:
             shortest *= SHORTER
+            prediction *= STRICTER
         self.controls = Controls(
             end=0.0,
             shortest_step=shortest * self.strictness * fastest,
@@ -89,7 +91,7 @@ class Run:
             open_frame=self.surface.open_frame,
             edge_gap=gap,
             open_gap=self.surface.open_gap,
-            prediction=PREDICTION_ERROR * self.strictness**0.7,
+            prediction=prediction * self.strictness**0.7,
             memory=min(MEMORY_ERROR * self._tighten(1.3), 0.05),
             force=FORCE_ERROR * self._tighten(1.2),
             newton=self.surface.accuracy,

@@ -80,9 +80,7 @@ class Surface:
         compliance = contact.body.compliance.chain(breaks[-1] - breaks[0])
         # An edge of a slack contact is faster than the tip by about the Tabor number.
         fastest = motion.top_speed * max(1.0, contact.tabor_softened)
-        compliance = compliance.without_faster(
-            AT_ONCE * min(strictness, 1.0) * contact.reach / fastest
-        )
+        compliance = compliance.without_faster(AT_ONCE * contact.reach / fastest)
         height, height_parameters = motion.compiled_height
         profile, tip_parameters = contact.tip.compiled_profile
         law, potential, law_parameters = contact.surface.compiled_pressure

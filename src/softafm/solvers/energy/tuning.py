@@ -62,7 +62,7 @@ usual value, Nocedal and Wright, Numerical Optimization, 2006, section 3.1)."""
 
 AT_ONCE = 1e-5
 """Creep time, in times in which the edge crosses the reach of the surface forces, below which creep
-counts as instantaneous, at tolerances from 1e-2 on: its losses are that part of force times reach.
+counts as instantaneous: its losses are that part of force times reach, and of a jump count as its.
 At 3e-3 a slow curve on polyethylene jumped that does not (tests/test_spectroscopy.py)."""
 
 SHORT = 1e-2
@@ -192,6 +192,10 @@ FINEST_TARGET = 0.02
 
 PREDICTION_ERROR = 0.03
 """Largest error of the extrapolated shape, relative to the gap, at a tolerance of 1e-2."""
+
+STRICTER = 0.5
+"""Part of that where memory rides with the edge: the same steps, and viscous losses that were 1 %
+off are half as far."""
 
 MEMORY_ERROR = 0.005
 """Largest error of the memory in a step, relative to the gap, at that tolerance."""
