@@ -45,7 +45,7 @@ VARIABLES = {
     "drive_work": ("J", "work of drive and base on lever and tip in a cycle"),
     "damping": ("J", "energy dissipated by the lever itself in a cycle"),
     "jump_loss": ("J", "energy released by elastic jumps in a cycle"),
-    "apparent_force": ("N", "stiffness of the lever times its deflection"),
+    "apparent_force": ("N", "apparent force, from the deflection"),
     "mean_deflection": ("m", "mean deflection of the lever in a cycle"),
     "cycles_run": ("1", "cycles that were run"),
     "cycle_virial": ("J", "virial of each cycle"),
