@@ -90,3 +90,11 @@ def test_bad_input_is_refused_in_a_line(changed, said):
     given = {"amplitude": 100e-9, "frequency": 2e3, "peak_force": 2e-8} | changed
     with pytest.raises(ValueError, match=f"^{said}"):
         sa.peak_force_tapping(PS, LEVER, **given)
+
+
+def test_a_peak_that_is_not_held_is_told():
+    from softafm.modes.peak_force import _doubt_peak
+
+    assert _doubt_peak(np.array([2e-9, 1.005e-9]), 1e-9, 1e-2) == ()
+    with pytest.warns(sa.AccuracyWarning, match=r"1\.05 nN where 1 nN"):
+        _doubt_peak(np.array([1e-9, 1.05e-9]), 1e-9, 1e-2)

@@ -20,8 +20,8 @@ from softafm.modes.parts import Foreseen, Inputs, Layout, Outcome, Row, Settings
 from softafm.modes.perform import perform
 from softafm.modes.regularise import Regularise
 from softafm.modes.start import refuse_start_inside
-from softafm.modes.transient import choose_energy, doubt_balance
-from softafm.progress import Progress, make_reporter
+from softafm.modes.swings import choose_energy, pass_all
+from softafm.progress import Progress
 from softafm.results.content import Labelled, observables
 from softafm.solvers.energy import Energy
 from softafm.solvers.solver import Solver
@@ -197,29 +197,35 @@ def _simulate(inputs: Inputs, settings: Settings) -> Outcome:
         raise ValueError("mean_height, peak_force: give one of them, and leave the other out")
     swung = _Swung(solver, inputs, tolerance)
     started = perf_counter()
-    warned: list[AccuracyWarning] = []
-    with announce_compilation("a lever with inertia"), make_reporter(settings.progress) as report:
+    with announce_compilation("a lever with inertia"):
         if given.peak_force is None:
             height = check_finite("mean_height", given.mean_height, "m")
         else:
             height = swung.find_height(check_positive("peak_force", given.peak_force, "N"))
-        run, periods = swung.run(height, swung.periods)
-        try:
-            for done in periods:
-                if report is not None:
-                    report(done / swung.periods, f"period {done} of {swung.periods}")
-        except KeyboardInterrupt:
-            if not run.done:
-                raise
-            text = f"interrupted after {run.done} of {swung.periods} periods"
-            warned.append(AccuracyWarning(text))
-    values = run.observe()
-    warned += [*run.list_doubts(), *doubt_balance(values, tolerance)]
-    for warning in warned:
-        warn_caller(warning)
+        run, passing = swung.run(height, swung.periods)
+        values, warned = pass_all(run, passing, swung.periods, "period", settings)
+    if given.peak_force is not None:
+        warned += _doubt_peak(values["force_max"], given.peak_force, tolerance)
     data, coordinates = _tabulate(values, run, height)
     diagnostics = {"attempted_steps": run.tries, "wall_time": perf_counter() - started}
-    return Outcome(inputs.parts, solver, tolerance, data, coordinates, tuple(warned), diagnostics)
+    return Outcome(inputs.parts, solver, tolerance, data, coordinates, warned, diagnostics)
+
+
+def _doubt_peak(
+    reached: np.ndarray, wanted: float, tolerance: float
+) -> tuple[AccuracyWarning, ...]:
+    """Return what to warn of where the last peak is not the one that the height was found for."""
+    off = abs(float(reached[-1]) / wanted - 1)
+    if off <= tolerance:
+        return ()
+    warning = AccuracyWarning(
+        f"peak_force: the last period has {write_quantity(float(reached[-1]), 'N')} where "
+        f"{write_quantity(wanted, 'N')} were asked for: periods differ, as the lever still rings "
+        "when the tip comes down again; take a lower frequency or quality factor",
+        off,
+    )
+    warn_caller(warning)
+    return (warning,)
 
 
 def _tabulate(

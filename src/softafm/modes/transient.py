@@ -7,12 +7,10 @@ from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal
 
 import numpy as np
 
-from softafm.checks.callers import warn_caller
 from softafm.checks.refusals import show
 from softafm.checks.validate import check_choice, check_finite, check_tolerance, check_whole
 from softafm.compiled.announce import announce_compilation
 from softafm.contact import Contact
-from softafm.errors import AccuracyWarning
 from softafm.instrument.agreement import check_motion
 from softafm.instrument.cantilever import Cantilever
 from softafm.instrument.drive import Drive
@@ -24,11 +22,11 @@ from softafm.modes.parts import Axes, Foreseen, Inputs, Layout, Outcome, Row, Se
 from softafm.modes.perform import perform
 from softafm.modes.regularise import Regularise
 from softafm.modes.scales import Scales, tap_scales
-from softafm.modes.start import choose_solver, refuse_start_inside
-from softafm.progress import Progress, make_reporter
+from softafm.modes.start import refuse_start_inside
+from softafm.modes.swings import choose_energy, pass_all
+from softafm.progress import Progress
 from softafm.results.content import Labelled, observables
 from softafm.results.datasets import describe
-from softafm.solvers.energy import Energy
 from softafm.solvers.solver import Solver
 from softafm.units.quantities import LENGTH, write_quantity
 
@@ -43,8 +41,6 @@ _LEAST_AMPLITUDE = 1e-3
 """Free amplitude, in gaps at which the surfaces touch, below which errors of a step exceed it."""
 _FASTEST_BASE = 0.1
 """Speed of the base, in that of the tip, up to which its inertia is nothing to the lever."""
-_BALANCED, _LAST = 10.0, 20
-"""Tolerances, in the work of the drive, by which the energy of the last cycles may be amiss."""
 _PER_CYCLE = ("virial", "dissipation", "force_mean", "force_max", "force_min", "viscous_loss")
 _OF_LEVER = ("drive_work", "damping", "jump_loss", "mean_deflection", "base_height", "cycle_end")
 
@@ -213,17 +209,6 @@ def _liken(base: Motion, lever: Resonator) -> Sine:
     return Sine(find_lowest_height(base), amplitude, frequency, "steady")
 
 
-def choose_energy(given: Solver | None) -> Energy:
-    """Return the solver of a run, ``Energy()`` for None; ValueError if it is another one."""
-    solver = choose_solver(given)
-    if not isinstance(solver, Energy):
-        raise ValueError(
-            f"solver = '{solver.kind}': cannot carry a lever with inertia; leave it out, or take "
-            "'energy'"
-        )
-    return solver
-
-
 def _simulate(inputs: Inputs, settings: Settings) -> Outcome:
     """Carry surface and lever from cycle to cycle."""
     tolerance, solver = check_tolerance(settings.tolerance), choose_energy(settings.solver)
@@ -238,21 +223,7 @@ def _simulate(inputs: Inputs, settings: Settings) -> Outcome:
     first = float(base.breaks[0])
     ends = first + np.arange(1, cycles + 1) / lever.drives[0].frequency
     kept = {"last": cycles - 1, "all": 0, "none": cycles}[keep]
-    warned: list[AccuracyWarning] = []
-    with make_reporter(settings.progress) as report:
-        try:
-            for done in run.pass_cycles(ends, kept):
-                if report is not None:
-                    report(done / cycles, f"cycle {done} of {cycles}")
-        except KeyboardInterrupt:
-            if not run.done:
-                raise
-            text = f"interrupted after {run.done} of {cycles} cycles"
-            warned.append(AccuracyWarning(text))
-    values = run.observe()
-    warned += [*run.list_doubts(), *doubt_balance(values, tolerance)]
-    for warning in warned:
-        warn_caller(warning)
+    values, warned = pass_all(run, run.pass_cycles(ends, kept), cycles, "cycle", settings)
     data, coordinates = _tabulate(values, run, base, ends[: run.done])
     motion = {"kind": "transient", "base": _describe(inputs.motion.base), "cycles": run.done}
     motion |= {"keep": keep, "start": inputs.motion.start}
@@ -260,7 +231,7 @@ def _simulate(inputs: Inputs, settings: Settings) -> Outcome:
     drive = drives[0] if len(drives) == 1 else {"kind": "drives", "drives": drives}
     parts = {**inputs.parts, "motion": motion, "drive": drive}
     diagnostics = {"attempted_steps": run.tries, "wall_time": perf_counter() - started}
-    return Outcome(parts, solver, tolerance, data, coordinates, tuple(warned), diagnostics)
+    return Outcome(parts, solver, tolerance, data, coordinates, warned, diagnostics)
 
 
 def _describe(base: Any) -> Any:
@@ -268,20 +239,6 @@ def _describe(base: Any) -> Any:
     if not hasattr(base, "breaks"):
         return float(base)
     return describe(base)
-
-
-def doubt_balance(values: dict[str, np.ndarray], tolerance: float) -> tuple[AccuracyWarning, ...]:
-    """Return what to warn of where the sample takes another energy than the tip loses."""
-    taken = values["viscous_loss"] + values["jump_loss"]
-    fed = np.abs(values["drive_work"]).max()
-    off = float(np.median((values["dissipation"] - taken)[-_LAST:])) / fed if fed > 0 else 0.0
-    if abs(off) <= _BALANCED * tolerance:
-        return ()
-    text = (
-        f"energy is not balanced: in the last cycles {off:.2g} of the work of the drive goes into "
-        "the contact and is found neither in its dashpots nor in its jumps; lower the tolerance"
-    )
-    return (AccuracyWarning(text, abs(off)),)
 
 
 def _tabulate(
